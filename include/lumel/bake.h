@@ -1,0 +1,65 @@
+// The main job as a library call.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "lumel/context.h"
+#include "lumel/options.h"
+#include "lumel/result.h"
+#include "lumel/scene.h"
+
+namespace lumel {
+
+struct Lightmap;   // post/lightmap.h
+struct ChartSet;   // chart/chart_set.h
+struct Atlas;
+struct WorldGeometry;
+
+struct StageTime {
+    std::string stage;
+    double wall_seconds = 0.0, cpu_seconds = 0.0;
+};
+
+struct PageReport {
+    std::uint32_t page = 0, width = 0, height = 0;
+    std::uint64_t texels = 0, invalid = 0, filled = 0, dilated = 0;
+    double coverage = 0.0;  // baked texels over all texels of the page
+};
+
+// What report.json says.
+struct BakeReport {
+    std::string input_hash;
+    std::vector<StageTime> stages;
+    std::vector<PageReport> pages;
+    std::uint64_t triangles = 0, instances = 0, charts = 0, texels = 0, invalid_texels = 0;
+    std::uint64_t samples = 0;            // traced, over all texels
+    std::uint64_t rays = 0;               // all kinds
+    double trace_wall_seconds = 0.0;      // wall time of the stage that traces
+    double tracer_seconds = 0.0;          // inside the tracer's calls, summed over threads
+    double rays_per_second = 0.0;         // rays over trace_wall_seconds
+    double estimated_nrmse = 0.0;         // from the stored variance: sqrt(mean variance) / mean irradiance
+    double mean_irradiance[3] = {0, 0, 0};  // I = E/pi over baked texels
+    double texels_per_metre = 0.0;
+    std::uint64_t peak_memory_bytes = 0, predicted_memory_bytes = 0;
+    std::string tracer;                   // back end and instruction set
+    unsigned threads = 0;
+};
+
+// Receives pages in order as they are done, so that a level larger than memory can be streamed to disk.
+struct BakeSink {
+    // After charts and atlas, before any page.
+    std::function<Status(const WorldGeometry&, const ChartSet&, const Atlas&)> layout;
+    std::function<Status(const Lightmap&)> page;
+};
+
+// Applies the options' sky and sun to the scene (the map already loaded into scene.sky by the caller: files are `io`'s),
+// then runs charts, atlas, texels, tracing and post-processing, page by page.
+// Errors: invalid_input (no light: names --sky), out_of_memory (more than options.max_memory_bytes is needed: says how
+// much is), cancelled, and whatever the sink returns.
+Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const BakeSink& sink, Context& context);
+
+}  // namespace lumel

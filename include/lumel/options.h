@@ -1,0 +1,80 @@
+// What a user can ask of a bake. Plain data: each member says its default, unit, range and the meaning of zero.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "lumel/vec.h"
+
+namespace lumel {
+
+// Texel budget and samples where neither density nor samples are asked: preview 0.25 M texels, 64 samples;
+// medium 2 M, 512; production 8 M, 4096.
+enum class Preset : std::uint8_t { preview, medium, production };
+
+struct PresetValues {
+    double texel_budget;
+    std::uint32_t samples;
+};
+PresetValues preset_values(Preset preset);
+
+enum class Uv1Choice : std::uint8_t { automatic, scene, mesh, ignore };
+
+// Which layers the lightmap files sum; the master always keeps all.
+struct Include {
+    bool direct = true, sky = true, indirect = true;
+};
+
+// How the number of samples of a texel is decided.
+enum class StopRule : std::uint8_t {
+    fixed,  // every texel takes `samples`
+    flux,   // Frostbite 2018: every 10 % of the budget, stop where the texel's own standard error is within `error` of its
+            // mean at `confidence`. Biased dark on rare-event light; kept as the published baseline
+};
+
+struct SunOptions {
+    std::optional<Vec3> direction;  // the way light travels; unset: no sun from the options
+    double illuminance = 0.0;       // lux on a plane facing it; 0 with a direction set: 100 000
+    Vec3 color{1, 1, 1};            // linear, times illuminance
+    double angle_degrees = 0.0;     // angular diameter, 0..90
+};
+
+struct SkyOptions {
+    std::optional<Vec3> color;    // constant radiance
+    std::string file;             // equirectangular .hdr or .exr; empty: none. Overrides the sidecar's sky
+    double intensity = 1.0;       // nits per unit of colour or map, >= 0
+    double rotation_degrees = 0;  // about +Y
+    double blur_degrees = 0.0;    // energy-preserving prefilter: half width of the kernel; 0 = none, up to 90
+    bool extract_sun = false;     // find the sun's disc in the map, remove it and add it as a directional light
+};
+
+struct BakeOptions {
+    Preset preset = Preset::medium;
+    // Texels
+    std::uint32_t resolution_width = 0, resolution_height = 0;  // of the one page; 0 = free
+    std::uint32_t max_page = 4096;                              // largest page edge; 64..16384
+    double texels_per_metre = 0.0;                              // 0: from the preset's texel budget
+    Uv1Choice uv1 = Uv1Choice::automatic;
+    std::uint32_t dilate = 2;  // rings of texels filled around charts, 0..64
+    // Light
+    SkyOptions sky;
+    SunOptions sun;
+    Include include;
+    double direct_scale = 1.0, indirect_scale = 1.0;  // of the layers (direct and sky; indirect), >= 0
+    bool two_sided = false;                           // bake both sides of double-sided surfaces
+    // Transport
+    std::uint32_t samples = 0;  // paths per texel, 1..2^24; 0: the preset's
+    std::uint32_t bounces = 64; // 0 = direct light only, up to 1024
+    std::uint64_t seed = 1;
+    double ao_distance = 0.0;  // metres; 0: a tenth of the scene's diagonal
+    StopRule stop = StopRule::fixed;
+    double error = 0.05;       // of StopRule::flux: relative
+    double confidence = 0.95;  // of StopRule::flux: 0.5..0.9999
+    // Machine
+    unsigned threads = 0;               // 0: one per hardware thread
+    std::uint64_t max_memory_bytes = 0; // 0: no ceiling
+};
+
+}  // namespace lumel

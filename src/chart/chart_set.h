@@ -1,0 +1,87 @@
+// Charts of the baked meshes: who belongs to which chart, and where in the chart's own plane. And the atlas: where each
+// chart of each instance lies on which page.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "lumel/context.h"
+#include "lumel/result.h"
+#include "lumel/scene.h"
+#include "scene/world_geometry.h"
+
+namespace lumel {
+
+struct Chart {
+    std::uint32_t first = 0, count = 0;  // into MeshCharts::order: the triangles of this chart
+    Vec2 min{}, max{};                   // bounds of its UVs, chart units
+};
+
+// Chart units are metres in mesh space (isometric flattening), or units of TEXCOORD_1 for a kept scene-wide layout.
+struct MeshCharts {
+    std::vector<std::uint32_t> chart_of_triangle;   // kNone for zero-area triangles
+    std::vector<std::array<Vec2, 3>> uv;            // per triangle corner
+    std::vector<std::uint32_t> order;               // triangle ids grouped by chart
+    std::vector<Chart> charts;
+    bool from_uv1 = false;                          // charts are the islands of the file's TEXCOORD_1
+};
+
+struct ChartSet {
+    std::vector<MeshCharts> meshes;  // one per Scene::meshes; empty charts where no instance wants texels
+    bool scene_wide = false;         // TEXCOORD_1 is one atlas of the whole scene and is kept unchanged
+};
+
+// uv_texels = uv_chart * scale + offset, in texels of `page` (texel centres at i + 0.5).
+struct ChartPlacement {
+    std::uint32_t page = kNone;  // kNone: not placed (no texels)
+    Vec2 scale{1, 1};
+    Vec2 offset{};
+};
+
+struct AtlasPage {
+    std::uint32_t width = 0, height = 0;
+};
+
+struct Atlas {
+    std::vector<AtlasPage> pages;
+    std::vector<std::uint32_t> first_placement;  // per Scene::instances, plus one past the end
+    std::vector<ChartPlacement> placements;      // of instance i: [first_placement[i] + chart]
+    double texels_per_metre = 0.0;               // as asked or solved; 0 for a kept layout
+
+    // Lightmap UV of a triangle's corners in texels of the page, and that page; page kNone: no texels.
+    struct TriangleUv {
+        std::uint32_t page = kNone;
+        std::array<Vec2, 3> texels{};
+    };
+    [[nodiscard]] TriangleUv triangle_uv(const ChartSet& charts, const WorldGeometry& geometry, const Scene& scene,
+                                         std::uint32_t world_triangle) const;
+};
+
+enum class Uv1Policy : std::uint8_t { automatic, scene, mesh, ignore };
+
+struct ChartOptions {
+    Uv1Policy uv1 = Uv1Policy::automatic;
+    std::uint32_t resolution_width = 0, resolution_height = 0;  // of the one page; 0 = free
+    std::uint32_t max_page = 4096;                              // largest page edge, texels, 64..16384
+    double texels_per_metre = 0.0;                              // 0: solved from the budget
+    double texel_budget = 250000.0;                             // texels, where no density is asked
+};
+
+// Overlaps that the layout itself has: two triangles of different charts, or of one chart, that share texels.
+struct UvOverlap {
+    std::uint32_t instance_a = 0, triangle_a = 0;  // mesh triangles
+    std::uint32_t instance_b = 0, triangle_b = 0;
+};
+
+// Charts of every mesh some lightmap instance uses. Deterministic for any thread count.
+// Diagnostics: "uv1-rejected" (why a file's TEXCOORD_1 was not kept), "uv-overlap", "zero-area-triangle", "unwrap-fallback".
+Result<ChartSet> make_charts(const Scene& scene, const WorldGeometry& geometry, const ChartOptions& options,
+                             Context& context);
+
+// Places the charts of every lightmap instance. Errors: usage where they cannot fit the asked resolution.
+Result<Atlas> make_atlas(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts,
+                         const ChartOptions& options, Context& context);
+
+}  // namespace lumel

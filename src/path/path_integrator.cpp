@@ -1,0 +1,556 @@
+// Based on: Kajiya 1986 (path tracing); Veach 1997, ch. 9 (power heuristic) and 10.4 (roulette); O'Donnell 2018,
+// "Precomputed Global Illumination in Frostbite" (sample points per texel, validity by back faces, the stop rule).
+// Differs from Frostbite: Owen-scrambled Sobol points instead of rotated Halton; vertex normals; area lights and sky are
+// combined by MIS; void paths leave the count too.
+#include "path/path_integrator.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/check.h"
+#include "base/parallel.h"
+#include "base/try.h"
+#include "math/constants.h"
+#include "math/frame.h"
+#include "math/sampler.h"
+#include "math/warp.h"
+#include "sh/basis.h"
+#include "texel/ray_offset.h"
+
+namespace lumel {
+namespace {
+
+// Pairs of random numbers of one vertex: direction, sky, point on a local light, (its choice, roulette), then one a sun.
+enum Pair : std::uint32_t { kDirectionPair, kSkyPair, kLocalPair, kChoicePair, kFirstSunPair };
+
+constexpr std::uint32_t kRouletteFrom = 3;  // the first vertex after which a path may be ended by chance
+constexpr float kShadowShortening = 1.0f - 1e-4f;  // of shadow rays to finite lights, against hitting the light itself
+
+float power_heuristic(float pdf, float other_pdf) {
+    const float a = pdf * pdf;
+    const float b = other_pdf * other_pdf;
+    // Squares overflow for nearly singular densities; there the larger one has it all.
+    if (!std::isfinite(a)) return std::isfinite(b) ? 1.0f : 0.5f;
+    return a / (a + b);
+}
+
+bool is_black(Vec3 c) { return c.x <= 0.0f && c.y <= 0.0f && c.z <= 0.0f; }
+
+}  // namespace
+
+// One lane is one path. Arrays are indexed by lane unless they say otherwise.
+class PathIntegrator::Workspace {
+public:
+    struct Vertex {
+        Vec3 position;        // on the surface, lifted towards the side the path is on
+        Vec3 normal;          // shading normal on that side
+        Vec3 face_normal;     // geometric normal on that side; zero at the start of a path, where it does not limit
+        Vec3 reflectance;     // albedo / pi
+        float direction_pdf;  // solid-angle density with which `direction` was drawn
+        Vec3 direction;
+    };
+    // A light sample waiting for its shadow ray.
+    struct Pending {
+        std::uint32_t lane;
+        Layer layer;
+        Vec3 direction;
+        Vec3 value;  // radiance over density, MIS included; times throughput after a bounce
+    };
+
+    std::array<Vertex, kWavefrontLanes> vertex;
+    std::array<Vec3, kWavefrontLanes> throughput;
+    std::array<Vec3, kWavefrontLanes> bounced;         // light gathered after the first hit, radiance of the first ray
+    std::array<Vec3, kWavefrontLanes> first_direction;
+    std::array<float, kWavefrontLanes> first_pdf;
+    std::array<std::uint32_t, kWavefrontLanes> lanes;  // of the paths still alive
+    std::array<Ray, kWavefrontLanes> rays;             // by position in `lanes`
+    std::array<Hit, kWavefrontLanes> hits;
+
+    std::vector<Ray> shadow_rays;
+    std::vector<Pending> pending;
+    std::vector<std::uint8_t> blocked;
+
+    std::array<PathStart, kWavefrontLanes> starts;
+    std::array<SurfaceStart, kSamplesPerTexel> surfaces;
+    std::array<SurfaceStart, kSamplesPerTexel> back_surfaces;
+    std::array<std::uint8_t, kSamplesPerTexel> sides;
+};
+
+PathIntegrator::PathIntegrator(const Transport& transport, const PathOptions& options)
+    : transport_(transport),
+      options_(options),
+      pairs_per_vertex_(kFirstSunPair + static_cast<std::uint32_t>(transport.lights.sun_count())) {}
+
+PathIntegrator::~PathIntegrator() = default;
+
+std::unique_ptr<PathIntegrator::Workspace> PathIntegrator::make_workspace() const {
+    auto workspace = std::make_unique<Workspace>();
+    const std::size_t events = kWavefrontLanes * (2 + transport_.lights.sun_count());
+    workspace->shadow_rays.reserve(events);
+    workspace->pending.reserve(events);
+    workspace->blocked.reserve(events);
+    return workspace;
+}
+
+namespace {
+
+// Light samples of one vertex, queued with their shadow rays. Shared by the first vertex (bounced = false, where every
+// sample is an event of its own with a direction) and the later ones (where only the sum matters).
+template <class Workspace>
+class LightQueue {
+public:
+    LightQueue(const Transport& transport, Workspace& workspace) : transport_(transport), workspace_(workspace) {
+        workspace_.pending.clear();
+        workspace_.shadow_rays.clear();
+    }
+
+    // `pdf_of(cosine)`: density of the direction sampling at this vertex, for MIS. `value_of(cosine)`: what multiplies
+    // the light sample's weight.
+    template <class PdfOf, class ValueOf>
+    void sample_all(std::uint32_t lane, const Sampler& sampler, std::uint32_t first_pair, bool bounced, PdfOf&& pdf_of,
+                    ValueOf&& value_of) {
+        const auto& vertex = workspace_.vertex[lane];
+        const LightSet& lights = transport_.lights;
+        const std::uint32_t key = sampler.hash(first_pair);
+        for (std::size_t sun = 0; sun < lights.sun_count(); ++sun) {
+            const Vec2 u = sampler.pair(first_pair + kFirstSunPair + static_cast<std::uint32_t>(sun));
+            push(lane, Layer::direct, vertex, lights.sample_sun(sun, u, bounced), key, pdf_of, value_of);
+        }
+        if (lights.has_sky())
+            push(lane, Layer::sky, vertex, lights.sample_sky(sampler.pair(first_pair + kSkyPair)), key, pdf_of, value_of);
+        if (lights.has_local())
+            push(lane, Layer::direct, vertex,
+                 lights.sample_local(vertex.position, sampler.one(first_pair + kChoicePair),
+                                     sampler.pair(first_pair + kLocalPair), bounced),
+                 key, pdf_of, value_of);
+    }
+
+    // Traces the queue and calls arrive(pending) for each sample that is not blocked, in the order of queueing.
+    template <class Arrive>
+    void resolve(Arrive&& arrive) {
+        workspace_.blocked.resize(workspace_.pending.size());
+        transport_.tracer.occluded(workspace_.shadow_rays, workspace_.blocked);
+        for (std::size_t i = 0; i < workspace_.pending.size(); ++i)
+            if (!workspace_.blocked[i]) arrive(workspace_.pending[i]);
+    }
+
+private:
+    template <class Vertex, class PdfOf, class ValueOf>
+    void push(std::uint32_t lane, Layer layer, const Vertex& vertex, const LightSample& sample, std::uint32_t key,
+              PdfOf& pdf_of, ValueOf& value_of) {
+        const float cosine = dot(sample.direction, vertex.normal);
+        if (sample.distance <= 0.0f || cosine <= 0.0f || is_black(sample.weight)) return;
+        if (vertex.face_normal != Vec3{} && dot(sample.direction, vertex.face_normal) <= 0.0f) return;
+        const float mis = sample.pdf > 0.0f ? power_heuristic(sample.pdf, pdf_of(cosine)) : 1.0f;
+        workspace_.pending.push_back({lane, layer, sample.direction, value_of(cosine) * sample.weight * mis});
+        Ray ray;
+        ray.origin = vertex.position;
+        ray.direction = sample.direction;
+        ray.tmax = sample.distance < kInfiniteDistance ? sample.distance * kShadowShortening : kInfiniteDistance;
+        ray.skip = sample.triangle;
+        ray.alpha_key = key;
+        workspace_.shadow_rays.push_back(ray);
+    }
+
+    const Transport& transport_;
+    Workspace& workspace_;
+};
+
+}  // namespace
+
+// Sink: void_path(lane); free_path(lane, direction, pdf, distance or infinity, sky);
+// light(lane, layer, direction, radiance over density).
+template <class Sink>
+void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w, Sink& sink) const {
+    LUMEL_CHECK(starts.size() <= kWavefrontLanes, starts.size());
+    const LightSet& lights = transport_.lights;
+    const WorldGeometry& geometry = transport_.geometry;
+
+    // First rays: over the hemisphere of the start's normal.
+    const std::size_t count = starts.size();
+    for (std::uint32_t lane = 0; lane < count; ++lane) {
+        const Sampler sampler(starts[lane].key, starts[lane].index);
+        const Vec3 local = GatherHemisphere::sample(sampler.pair(kDirectionPair));
+        auto& vertex = w.vertex[lane];
+        vertex.position = starts[lane].origin;
+        vertex.normal = starts[lane].normal;
+        vertex.face_normal = {};
+        vertex.direction = Frame(vertex.normal).to_world(local);
+        vertex.direction_pdf = GatherHemisphere::pdf(local.z);
+        w.first_direction[lane] = vertex.direction;
+        w.first_pdf[lane] = vertex.direction_pdf;
+        w.throughput[lane] = {1, 1, 1};
+        w.bounced[lane] = {};
+        Ray& ray = w.rays[lane];
+        ray = {};
+        ray.origin = vertex.position;
+        ray.direction = vertex.direction;
+        ray.alpha_key = sampler.hash(0x51ed270bu);
+    }
+    transport_.tracer.closest(std::span(w.rays).first(count), std::span(w.hits).first(count));
+
+    // Void paths are known now and cost nothing more.
+    std::size_t alive = 0;
+    for (std::uint32_t lane = 0; lane < count; ++lane) {
+        const Hit& hit = w.hits[lane];
+        if (!hit.missed() && hit.back_face && !(geometry.triangles[hit.triangle].flags & kDoubleSided)) {
+            sink.void_path(lane);
+        } else {
+            w.hits[alive] = hit;
+            w.lanes[alive++] = lane;
+        }
+    }
+
+    // Light that reaches the start from sampled directions.
+    {
+        LightQueue<Workspace> queue(transport_, w);
+        for (std::size_t i = 0; i < alive; ++i) {
+            const std::uint32_t lane = w.lanes[i];
+            queue.sample_all(
+                lane, Sampler(starts[lane].key, starts[lane].index), 0, false,
+                [](float cosine) { return GatherHemisphere::pdf(cosine); }, [](float) { return Vec3{1, 1, 1}; });
+        }
+        queue.resolve([&](const auto& event) { sink.light(event.lane, event.layer, event.direction, event.value); });
+    }
+
+    for (std::uint32_t bounce = 0;; ++bounce) {
+        const bool first = bounce == 0;
+        const auto arrive = [&](std::uint32_t lane, Layer layer, const LightHit& light) {
+            if (is_black(light.radiance)) return;
+            const auto& vertex = w.vertex[lane];
+            const float mis = light.pdf > 0.0f ? power_heuristic(vertex.direction_pdf, light.pdf) : 1.0f;
+            if (first)
+                sink.light(lane, layer, vertex.direction, light.radiance * (mis / vertex.direction_pdf));
+            else
+                w.bounced[lane] += w.throughput[lane] * light.radiance * mis;
+        };
+
+        // What the rays met: light along the way, the sky, or a surface.
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < alive; ++i) {
+            const std::uint32_t lane = w.lanes[i];
+            const Hit& hit = w.hits[i];
+            auto& vertex = w.vertex[lane];
+            const float distance = hit.missed() ? kInfiniteDistance : hit.t;
+            if (lights.has_shapes())
+                lights.shapes_along(vertex.position, vertex.direction, distance, !first,
+                                    [&](const LightHit& light) { arrive(lane, Layer::direct, light); });
+            if (first) sink.free_path(lane, vertex.direction, vertex.direction_pdf, distance, hit.missed());
+            if (hit.missed()) {
+                if (lights.has_sky()) arrive(lane, Layer::sky, lights.sky(vertex.direction));
+                for (std::size_t sun = 0; sun < lights.sun_count(); ++sun) {
+                    const LightHit light = lights.sun(sun, vertex.direction, !first);
+                    if (light.pdf > 0.0f) arrive(lane, Layer::direct, light);
+                }
+                continue;
+            }
+            const WorldTriangle& triangle = geometry.triangles[hit.triangle];
+            if (hit.back_face && !(triangle.flags & kDoubleSided)) continue;
+            if (triangle.flags & kEmissive)
+                arrive(lane, Layer::direct,
+                       lights.emissive(hit.triangle, hit.b1, hit.b2, vertex.position, vertex.direction, hit.t, hit.back_face));
+            if (bounce == options_.bounces || (triangle.flags & kOccluderOnly)) continue;
+
+            // The path stands on a new surface.
+            const float side = hit.back_face ? -1.0f : 1.0f;
+            vertex.face_normal = geometry.geometric_normal(hit.triangle) * side;
+            vertex.normal = geometry.shading_normal(hit.triangle, hit.b1, hit.b2) * side;
+            vertex.position = offset_origin(geometry, hit.triangle, hit.b1, hit.b2, vertex.face_normal);
+            vertex.reflectance = transport_.surfaces.albedo(hit.triangle, hit.b1, hit.b2) * kInvPi;
+            if (is_black(vertex.reflectance)) continue;
+            w.lanes[kept++] = lane;
+        }
+        alive = kept;
+        if (alive == 0) break;
+
+        // Direct light on it.
+        const std::uint32_t first_pair = (bounce + 1) * pairs_per_vertex_;
+        LightQueue<Workspace> queue(transport_, w);
+        for (std::size_t i = 0; i < alive; ++i) {
+            const std::uint32_t lane = w.lanes[i];
+            const Vec3 scale = w.throughput[lane] * w.vertex[lane].reflectance;
+            queue.sample_all(
+                lane, Sampler(starts[lane].key, starts[lane].index), first_pair, true,
+                [](float cosine) { return CosineHemisphere::pdf(cosine); },
+                [&](float cosine) { return scale * cosine; });
+        }
+        queue.resolve([&](const auto& event) { w.bounced[event.lane] += event.value; });
+
+        // On to the next surface.
+        kept = 0;
+        for (std::size_t i = 0; i < alive; ++i) {
+            const std::uint32_t lane = w.lanes[i];
+            auto& vertex = w.vertex[lane];
+            const Sampler sampler(starts[lane].key, starts[lane].index);
+            w.throughput[lane] *= vertex.reflectance * kPi;  // cosine-weighted directions: f cos / pdf = albedo
+            if (bounce + 1 >= kRouletteFrom) {
+                const float survival = std::min(1.0f, max_component(w.throughput[lane]));
+                if (!(sampler.pair(first_pair + kChoicePair).y < survival)) continue;
+                w.throughput[lane] *= 1.0f / survival;
+            }
+            const Vec3 local = CosineHemisphere::sample(sampler.pair(first_pair + kDirectionPair));
+            vertex.direction = Frame(vertex.normal).to_world(local);
+            vertex.direction_pdf = CosineHemisphere::pdf(local.z);
+            if (vertex.direction_pdf <= 0.0f || dot(vertex.direction, vertex.face_normal) <= 0.0f) continue;
+            Ray& ray = w.rays[kept];
+            ray = {};
+            ray.origin = vertex.position;
+            ray.direction = vertex.direction;
+            ray.alpha_key = sampler.hash(0x51ed270bu + first_pair);
+            w.lanes[kept++] = lane;
+        }
+        alive = kept;
+        if (alive == 0) break;
+        transport_.tracer.closest(std::span(w.rays).first(alive), std::span(w.hits).first(alive));
+    }
+
+    for (std::uint32_t lane = 0; lane < count; ++lane)
+        if (!is_black(w.bounced[lane]))
+            sink.light(lane, Layer::indirect, w.first_direction[lane], w.bounced[lane] * (1.0f / w.first_pdf[lane]));
+}
+
+void PathIntegrator::surface_starts(std::span<const SamplePoint> points, std::span<const std::uint8_t> back_side,
+                                    Workspace& w, std::span<SurfaceStart> out) const {
+    LUMEL_CHECK(points.size() <= kWavefrontLanes && out.size() >= points.size(), points.size(), out.size());
+    const WorldGeometry& geometry = transport_.geometry;
+    std::size_t lifted = 0;
+    for (std::uint32_t i = 0; i < points.size(); ++i) {
+        const auto [triangle, b1, b2] = points[i];
+        const float side = back_side[i] ? -1.0f : 1.0f;
+        const Vec3 face_normal = geometry.geometric_normal(triangle) * side;
+        out[i].normal = geometry.shading_normal(triangle, b1, b2) * side;
+        out[i].origin = offset_origin(geometry, triangle, b1, b2, face_normal);
+        if (!(geometry.triangles[triangle].flags & kCurved)) continue;
+        const Vec3 move =
+            smooth_position(geometry, triangle, b1, b2, back_side[i] != 0) - geometry.position(triangle, b1, b2);
+        const float distance = length(move);
+        if (!(distance > 0.0f)) continue;
+        w.lanes[lifted] = i;
+        w.rays[lifted] = {};
+        w.rays[lifted].origin = out[i].origin;
+        w.rays[lifted].direction = move / distance;
+        w.rays[lifted].tmax = distance;
+        ++lifted;
+    }
+    if (lifted == 0) return;
+    w.blocked.resize(lifted);
+    transport_.tracer.occluded(std::span(w.rays).first(lifted), w.blocked);
+    for (std::size_t k = 0; k < lifted; ++k)
+        if (!w.blocked[k]) out[w.lanes[k]].origin += w.rays[k].direction * w.rays[k].tmax;
+}
+
+namespace {
+
+// Sums of one texel, in double: millions of samples must add up.
+class TexelSink {
+public:
+    explicit TexelSink(float ao_distance) : ao_distance_(ao_distance) {}
+
+    void begin(std::span<const PathStart> starts, float sh_scale) {
+        starts_ = starts;
+        sh_scale_ = sh_scale;
+        for (std::size_t lane = 0; lane < starts.size(); ++lane) {
+            sample_[lane] = {};
+            void_[lane] = false;
+        }
+    }
+
+    void void_path(std::uint32_t lane) { void_[lane] = true; }
+
+    void light(std::uint32_t lane, Layer layer, Vec3 direction, Vec3 value) {
+        LayerSums& sums = layers_[static_cast<std::size_t>(layer)];
+        const ShBasis basis = sh_basis(direction);
+        for (std::size_t i = 0; i < kShCoefficients; ++i)
+            for (std::size_t c = 0; c < 3; ++c)
+                sums.sh[i][c] += static_cast<double>(basis[i]) * static_cast<double>(value[c] * sh_scale_);
+        const float cosine = std::max(0.0f, dot(direction, starts_[lane].normal));
+        const Vec3 irradiance = value * (cosine * kInvPi);
+        for (std::size_t c = 0; c < 3; ++c) sums.irradiance[c] += static_cast<double>(irradiance[c]);
+        sample_[lane] += irradiance;
+    }
+
+    void free_path(std::uint32_t lane, Vec3 direction, float pdf, float distance, bool sky) {
+        const float cosine = std::max(0.0f, dot(direction, starts_[lane].normal));
+        const double weight = static_cast<double>(cosine * kInvPi / pdf);
+        if (sky) sky_visibility_ += weight;
+        if (distance <= ao_distance_) return;
+        open_ += weight;
+        for (std::size_t c = 0; c < 3; ++c) bent_[c] += weight * static_cast<double>(direction[c]);
+    }
+
+    void end() {
+        for (std::size_t lane = 0; lane < starts_.size(); ++lane) {
+            ++traced_;
+            if (void_[lane]) continue;
+            ++count_;
+            for (std::size_t c = 0; c < 3; ++c) {
+                const double x = static_cast<double>(sample_[lane][c]);
+                sum_[c] += x;
+                squares_[c] += x * x;
+            }
+            const double y = static_cast<double>(luminance(sample_[lane]));
+            luminance_sum_ += y;
+            luminance_squares_ += y * y;
+        }
+    }
+
+    // Frostbite's rule on the texel's own luminance.
+    [[nodiscard]] bool converged(double relative_error) const {
+        if (count_ < 2) return false;
+        const double n = static_cast<double>(count_);
+        const double mean = luminance_sum_ / n;
+        return std::sqrt(variance_of_mean(luminance_sum_, luminance_squares_)) <= relative_error * mean;
+    }
+
+    void store(RadianceSums& out, std::size_t index) const {
+        out.traced[index] = traced_;
+        out.count[index] = count_;
+        if (count_ == 0) return;
+        const double inverse = 1.0 / static_cast<double>(count_);
+        for (std::size_t layer = 0; layer < kLayerCount; ++layer) {
+            LayerMoments& moments = out.layers[index][layer];
+            for (std::size_t c = 0; c < 3; ++c) {
+                for (std::size_t i = 0; i < kShCoefficients; ++i)
+                    moments.sh[i][c] = static_cast<float>(layers_[layer].sh[i][c] * inverse);
+                moments.irradiance[c] = static_cast<float>(layers_[layer].irradiance[c] * inverse);
+            }
+        }
+        for (std::size_t c = 0; c < 3; ++c) {
+            out.variance[index][c] = static_cast<float>(variance_of_mean(sum_[c], squares_[c]));
+            out.bent_normal[index][c] = static_cast<float>(bent_[c] * inverse);
+        }
+        out.sky_visibility[index] = static_cast<float>(std::min(1.0, sky_visibility_ * inverse));
+        out.ambient_occlusion[index] = static_cast<float>(std::min(1.0, open_ * inverse));
+    }
+
+private:
+    struct LayerSums {
+        std::array<std::array<double, 3>, kShCoefficients> sh{};
+        std::array<double, 3> irradiance{};
+    };
+
+    [[nodiscard]] double variance_of_mean(double sum, double squares) const {
+        if (count_ < 2) return 0.0;
+        const double n = static_cast<double>(count_);
+        return std::max(0.0, squares - sum * sum / n) / (n * (n - 1.0));
+    }
+
+    float ao_distance_;
+    float sh_scale_ = 1.0f;
+    std::span<const PathStart> starts_;
+    std::array<Vec3, kWavefrontLanes> sample_{};
+    std::array<bool, kWavefrontLanes> void_{};
+    std::array<LayerSums, kLayerCount> layers_{};
+    std::array<double, 3> sum_{}, squares_{}, bent_{};
+    double luminance_sum_ = 0.0, luminance_squares_ = 0.0, sky_visibility_ = 0.0, open_ = 0.0;
+    std::uint32_t count_ = 0, traced_ = 0;
+};
+
+// Only the irradiance of each path, for pictures.
+class IrradianceSink {
+public:
+    IrradianceSink(std::span<const PathStart> starts, std::span<Vec3> irradiance, std::span<std::uint8_t> valid)
+        : starts_(starts), irradiance_(irradiance), valid_(valid) {
+        std::fill(irradiance.begin(), irradiance.end(), Vec3{});
+        std::fill(valid.begin(), valid.end(), std::uint8_t{1});
+    }
+    void void_path(std::uint32_t lane) { valid_[lane] = 0; }
+    void free_path(std::uint32_t, Vec3, float, float, bool) {}
+    void light(std::uint32_t lane, Layer, Vec3 direction, Vec3 value) {
+        irradiance_[lane] += value * (std::max(0.0f, dot(direction, starts_[lane].normal)) * kInvPi);
+    }
+
+private:
+    std::span<const PathStart> starts_;
+    std::span<Vec3> irradiance_;
+    std::span<std::uint8_t> valid_;
+};
+
+}  // namespace
+
+void PathIntegrator::gather_irradiance(std::span<const PathStart> starts, Workspace& workspace,
+                                       std::span<Vec3> irradiance, std::span<std::uint8_t> valid) const {
+    IrradianceSink sink(starts, irradiance, valid);
+    trace_paths(starts, workspace, sink);
+}
+
+void PathIntegrator::gather_texel(std::span<const SamplePoint> points, std::uint64_t id, Workspace& w,
+                                  RadianceSums& out, std::size_t index, const Context& context) const {
+    LUMEL_CHECK(!points.empty() && points.size() <= kSamplesPerTexel, points.size());
+    const std::uint32_t key = sampler_key(options_.seed, id);
+    const bool both_sides =
+        options_.two_sided && (transport_.geometry.triangles[points[0].triangle].flags & kDoubleSided) != 0;
+
+    const std::size_t n = points.size();
+    std::fill(w.sides.begin(), w.sides.end(), std::uint8_t{0});
+    surface_starts(points, std::span(w.sides).first(n), w, w.surfaces);
+    if (both_sides) {
+        std::fill(w.sides.begin(), w.sides.end(), std::uint8_t{1});
+        surface_starts(points, std::span(w.sides).first(n), w, w.back_surfaces);
+    }
+
+    TexelSink sink(options_.ao_distance);
+    const std::uint32_t tenth = (options_.samples + 9) / 10;
+    std::uint32_t next_check = tenth;
+    for (std::uint32_t base = 0; base < options_.samples; base += kWavefrontLanes) {
+        if (context.cancelled()) return;
+        const std::uint32_t lanes = std::min<std::uint32_t>(kWavefrontLanes, options_.samples - base);
+        for (std::uint32_t lane = 0; lane < lanes; ++lane) {
+            const std::uint32_t sample = base + lane;
+            // Both sides take turns in pairs, so that each side meets every sample point.
+            const bool back = both_sides && ((sample ^ (sample / kWavefrontLanes)) & 1u) != 0;
+            const SurfaceStart& start = (back ? w.back_surfaces : w.surfaces)[sample % n];
+            w.starts[lane] = {start.origin, start.normal, key, sample};
+        }
+        const auto starts = std::span<const PathStart>(w.starts).first(lanes);
+        sink.begin(starts, both_sides ? 2.0f : 1.0f);
+        trace_paths(starts, w, sink);
+        sink.end();
+        if (options_.stop == StopRule::flux && base + lanes >= next_check) {
+            if (sink.converged(options_.relative_error_of_mean)) break;
+            next_check += tenth;
+        }
+    }
+    sink.store(out, index);
+}
+
+void RadianceSums::resize(std::size_t texels) {
+    layers.resize(texels);
+    variance.resize(texels);
+    sky_visibility.resize(texels);
+    ambient_occlusion.resize(texels);
+    bent_normal.resize(texels);
+    count.resize(texels);
+    traced.resize(texels);
+}
+
+Result<RadianceSums> gather_page(const TexelBuffer& texels, const ChartSet& charts, const Atlas& atlas,
+                                 const Transport& transport, const PathOptions& options, std::size_t first,
+                                 std::size_t count, Context& context) {
+    LUMEL_CHECK(first + count <= texels.size(), first, count, texels.size());
+    RadianceSums sums;
+    sums.resize(texels.size());
+    const PathIntegrator integrator(transport, options);
+    std::vector<std::unique_ptr<PathIntegrator::Workspace>> workspaces(context.threads());
+    for (auto& workspace : workspaces) workspace = integrator.make_workspace();
+
+    // Small enough that a cancelled bake stops within a fraction of a second.
+    constexpr std::size_t kTexelsPerChunk = 16;
+    const bool done = parallel_for(
+        context, count, kTexelsPerChunk,
+        [&](const ChunkRange& range) {
+            std::array<SamplePoint, kSamplesPerTexel> points;
+            for (std::size_t i = first + range.begin; i < first + range.end; ++i) {
+                const std::uint32_t n =
+                    sample_points(texels, i, transport.scene, transport.geometry, charts, atlas, points);
+                const std::uint64_t id = (std::uint64_t{texels.page} << 32) | (std::uint64_t{texels.y[i]} << 16) | texels.x[i];
+                integrator.gather_texel(std::span(points).first(n), id, *workspaces[range.worker], sums, i, context);
+            }
+        },
+        "trace");
+    if (!done || context.cancelled()) return Error{ErrorCode::cancelled, "the bake was cancelled", {}, {}};
+    return sums;
+}
+
+}  // namespace lumel

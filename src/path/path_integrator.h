@@ -1,0 +1,95 @@
+// The brute-force integrator: unidirectional path tracing with next-event estimation and multiple importance sampling,
+// in wavefronts of up to 64 paths. It is the truth that faster integrators are measured against.
+//
+// Which rays a texel sends (docs/conventions.md, "The hemisphere of a texel"): the upper hemisphere of the vertex normal,
+// with density (1/2 + cos)/(2 pi), from sample points spread over the texel. A path whose first ray meets the back of a
+// single-sided surface is void: it leaves the sums and the count, of every layer and moment alike.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "light/light_set.h"
+#include "lumel/options.h"
+#include "path/radiance_sums.h"
+#include "scene/surface.h"
+#include "texel/texel_buffer.h"
+#include "trace/tracer.h"
+
+namespace lumel {
+
+inline constexpr std::size_t kWavefrontLanes = 64;
+
+struct PathOptions {
+    std::uint32_t samples = 512;
+    std::uint32_t bounces = 64;
+    std::uint64_t seed = 1;
+    float ao_distance = 1.0f;  // metres
+    bool two_sided = false;
+    StopRule stop = StopRule::fixed;
+    double relative_error_of_mean = 0.0;  // StopRule::flux: error / z(confidence)
+};
+
+// What a path is traced through. Borrowed; all of it is const while paths run.
+struct Transport {
+    const Scene& scene;
+    const WorldGeometry& geometry;
+    SurfaceReader surfaces;
+    const LightSet& lights;
+    const Tracer& tracer;
+};
+
+// Where a path starts: a point that looks out over the hemisphere of `normal`.
+struct PathStart {
+    Vec3 origin;              // already lifted off its surface
+    Vec3 normal;              // of the hemisphere: the vertex normal that the runtime shades with
+    std::uint32_t key = 0;    // point set (math/sampler.h)
+    std::uint32_t index = 0;  // sample in it
+};
+
+// Origin and normal of a sample point: smooth position where it is reachable, else the offset flat point.
+struct SurfaceStart {
+    Vec3 origin, normal;
+};
+
+class PathIntegrator {
+public:
+    PathIntegrator(const Transport& transport, const PathOptions& options);
+    ~PathIntegrator();
+
+    // Scratch memory of one thread; nothing is allocated per sample.
+    class Workspace;
+    [[nodiscard]] std::unique_ptr<Workspace> make_workspace() const;
+
+    // Gathers all samples of one texel into out[index]. `id` names the texel for good (page and position), whatever
+    // range, thread or shard it is baked in. Stops early, leaving the texel untouched, if `cancelled` turns true.
+    void gather_texel(std::span<const SamplePoint> points, std::uint64_t id, Workspace& workspace, RadianceSums& out,
+                      std::size_t index, const Context& context) const;
+
+    // Irradiance I about the start's normal of each path (at most kWavefrontLanes), all layers; void paths give zero and
+    // valid = 0. For pictures: `lumel render`.
+    void gather_irradiance(std::span<const PathStart> starts, Workspace& workspace, std::span<Vec3> irradiance,
+                           std::span<std::uint8_t> valid) const;
+
+    // Lifts points off their surfaces: batch form, for the visibility test of smooth positions.
+    void surface_starts(std::span<const SamplePoint> points, std::span<const std::uint8_t> back_side,
+                        Workspace& workspace, std::span<SurfaceStart> out) const;
+
+private:
+    template <class Sink>
+    void trace_paths(std::span<const PathStart> starts, Workspace& workspace, Sink& sink) const;
+
+    Transport transport_;
+    PathOptions options_;
+    std::uint32_t pairs_per_vertex_;
+};
+
+// Stage: all texels of a page. `first`, `count`: the range of texels to do (the rest of the sums stay zero); any split
+// gives the same bits. Error: cancelled.
+Result<RadianceSums> gather_page(const TexelBuffer& texels, const ChartSet& charts, const Atlas& atlas,
+                                 const Transport& transport, const PathOptions& options, std::size_t first,
+                                 std::size_t count, Context& context);
+
+}  // namespace lumel
