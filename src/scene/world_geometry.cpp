@@ -1,0 +1,60 @@
+// Queries on the flattened geometry. They lie on the path of every ray: no allocation, no branches but the sign test.
+//
+// Cross products are taken in double: the products of float differences are exact there, so the side of a face and
+// whether it is flat to zero never hang on rounding, at any scale.
+#include "scene/world_geometry.h"
+
+namespace lumel {
+namespace {
+
+struct Cross {
+    double x, y, z;
+    [[nodiscard]] double squared() const { return x * x + y * y + z * z; }
+    [[nodiscard]] Vec3 unit(double length) const {
+        return {static_cast<float>(x / length), static_cast<float>(y / length), static_cast<float>(z / length)};
+    }
+};
+
+// Twice the area vector of the front face.
+Cross front_cross(const WorldGeometry& geometry, const WorldTriangle& triangle) {
+    const Vec3 a = geometry.positions[triangle.vertices[0]];
+    const Vec3 b = geometry.positions[triangle.vertices[1]];
+    const Vec3 c = geometry.positions[triangle.vertices[2]];
+    const double ux = double{b.x} - a.x, uy = double{b.y} - a.y, uz = double{b.z} - a.z;
+    const double vx = double{c.x} - a.x, vy = double{c.y} - a.y, vz = double{c.z} - a.z;
+    const double side = (triangle.flags & kMirrored) != 0 ? -1.0 : 1.0;
+    return {side * (uy * vz - uz * vy), side * (uz * vx - ux * vz), side * (ux * vy - uy * vx)};
+}
+
+Vec3 face_normal(const Cross& front) {
+    const double squared = front.squared();
+    return squared > 0.0 ? front.unit(std::sqrt(squared)) : Vec3{};
+}
+
+}  // namespace
+
+Vec3 WorldGeometry::geometric_normal(std::uint32_t triangle) const {
+    return face_normal(front_cross(*this, triangles[triangle]));
+}
+
+Vec3 WorldGeometry::shading_normal(std::uint32_t triangle, float b1, float b2) const {
+    const WorldTriangle& t = triangles[triangle];
+    const Vec3 n =
+        normals[t.vertices[0]] * (1.0f - b1 - b2) + normals[t.vertices[1]] * b1 + normals[t.vertices[2]] * b2;
+    const Cross front = front_cross(*this, t);
+    const bool in_front = n.x * front.x + n.y * front.y + n.z * front.z > 0.0;
+    if (in_front) return normalize_or(n, face_normal(front));
+    // A triangle without area has no front; the vertex normals are all there is.
+    return front.squared() > 0.0 ? face_normal(front) : normalize_or(n, {0, 1, 0});
+}
+
+Vec3 WorldGeometry::position(std::uint32_t triangle, float b1, float b2) const {
+    const auto [a, b, c] = corners(triangle);
+    return a * (1.0f - b1 - b2) + b * b1 + c * b2;
+}
+
+float WorldGeometry::area(std::uint32_t triangle) const {
+    return static_cast<float>(0.5 * std::sqrt(front_cross(*this, triangles[triangle]).squared()));
+}
+
+}  // namespace lumel
