@@ -14,14 +14,15 @@
 namespace lumel {
 
 // Precondition: all finite, direction of unit length, 0 <= tmin < tmax. Rays that break it are never handed to the
-// back end and count as misses (Debian's Embree aborts on them).
+// back end (an Embree with assertions aborts on them): they count as misses, unblocked, and as `invalid` in the
+// statistics.
 struct Ray {
     Vec3 origin;
     float tmin = 0.0f;
     Vec3 direction;
     float tmax = 1e30f;
-    std::uint32_t skip = kNone;  // a triangle that this ray cannot hit: the one it starts on
-    std::uint32_t alpha_key = 0; // random key of this ray: BLEND surfaces stop it with probability alpha
+    std::uint32_t skip = kNone;   // a triangle that this ray cannot hit: the one it starts on
+    std::uint32_t alpha_key = 0;  // random key of this ray: BLEND surfaces stop it with probability alpha
 };
 
 struct Hit {
@@ -34,16 +35,20 @@ struct Hit {
 
 // Totals since construction, summed over threads; read when no query runs.
 struct TraceStatistics {
-    std::uint64_t rays = 0;
-    double seconds = 0.0;  // inside the back end's calls, summed over threads
+    std::uint64_t rays = 0;     // asked for, the invalid ones too
+    std::uint64_t invalid = 0;  // rays that broke the precondition
+    double seconds = 0.0;       // inside the back end's calls, summed over threads
 };
+
+// Whether a ray keeps the precondition above.
+bool is_traceable(const Ray& ray);
 
 class Tracer {
 public:
     virtual ~Tracer() = default;
 
-    // Nearest hit of each ray that the alpha rule accepts. Spans of equal size. Thread-safe; results do not depend on
-    // the batch: batching is for speed alone.
+    // Nearest hit of each ray that the alpha rule accepts; of equally near ones that of the lowest triangle id. Spans
+    // of equal size. Thread-safe; results do not depend on the batch: batching is for speed alone.
     virtual void closest(std::span<const Ray> rays, std::span<Hit> hits) const = 0;
 
     // blocked[i] = 1 if anything lies within [tmin, tmax], else 0.
