@@ -56,8 +56,11 @@ struct BakeSink {
     std::function<Status(const Lightmap&)> page;
 };
 
-// Applies the options' sky and sun to the scene (the map already loaded into scene.sky by the caller: files are `io`'s),
-// then runs charts, atlas, texels, tracing and post-processing, page by page.
+// Applies the options' sky and sun to the scene, once, before bake() or a render. A sky map named by the options has been
+// loaded into scene.sky by the caller: files are `io`'s. Errors: usage, unsupported (no sun to extract).
+Status apply_lighting(Scene& scene, const BakeOptions& options);
+
+// Runs charts, atlas, texels, tracing and post-processing, page by page. The scene is as apply_lighting left it.
 // Errors: invalid_input (no light: names --sky), out_of_memory (more than options.max_memory_bytes is needed: says how
 // much is), cancelled, and whatever the sink returns.
 Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const BakeSink& sink, Context& context);

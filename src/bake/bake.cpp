@@ -1,0 +1,259 @@
+// The order of the stages. Nothing else knows it.
+#include "lumel/bake.h"
+
+#include <sys/resource.h>
+
+#include <chrono>
+#include <cmath>
+#include <string>
+
+#include "bake/memory.h"
+#include "base/try.h"
+#include "chart/chart_set.h"
+#include "light/light_set.h"
+#include "math/normal_quantile.h"
+#include "path/path_integrator.h"
+#include "post/lightmap.h"
+#include "scene/world_geometry.h"
+#include "texel/texel_buffer.h"
+#include "trace/tracer.h"
+
+namespace lumel {
+namespace {
+
+double cpu_seconds() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    const auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
+    return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+// Adds the life time of the object to a stage of the report; stages of the same name (one per page) add up.
+class StageTimer {
+public:
+    StageTimer(BakeReport& report, std::string stage)
+        : report_(report), stage_(std::move(stage)), wall_(std::chrono::steady_clock::now()), cpu_(cpu_seconds()) {}
+    ~StageTimer() {
+        const double wall = seconds();
+        const double cpu = cpu_seconds() - cpu_;
+        for (StageTime& time : report_.stages)
+            if (time.stage == stage_) {
+                time.wall_seconds += wall;
+                time.cpu_seconds += cpu;
+                return;
+            }
+        report_.stages.push_back({stage_, wall, cpu});
+    }
+    StageTimer(const StageTimer&) = delete;
+    StageTimer& operator=(const StageTimer&) = delete;
+    [[nodiscard]] double seconds() const {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_).count();
+    }
+
+private:
+    BakeReport& report_;
+    std::string stage_;
+    std::chrono::steady_clock::time_point wall_;
+    double cpu_;
+};
+
+Uv1Policy uv1_policy(Uv1Choice choice) {
+    switch (choice) {
+        case Uv1Choice::automatic: return Uv1Policy::automatic;
+        case Uv1Choice::scene: return Uv1Policy::scene;
+        case Uv1Choice::mesh: return Uv1Policy::mesh;
+        case Uv1Choice::ignore: return Uv1Policy::ignore;
+    }
+    return Uv1Policy::automatic;
+}
+
+ChartOptions chart_options(const BakeOptions& options) {
+    ChartOptions out;
+    out.uv1 = uv1_policy(options.uv1);
+    out.resolution_width = options.resolution_width;
+    out.resolution_height = options.resolution_height;
+    out.max_page = options.max_page;
+    out.texels_per_metre = options.texels_per_metre;
+    out.texel_budget = preset_values(options.preset).texel_budget;
+    return out;
+}
+
+PathOptions path_options(const BakeOptions& options, const WorldGeometry& geometry) {
+    PathOptions out;
+    out.samples = options.samples ? options.samples : preset_values(options.preset).samples;
+    out.bounces = options.bounces;
+    out.seed = options.seed;
+    const float diagonal = length(geometry.bounds_max - geometry.bounds_min);
+    out.ao_distance = options.ao_distance > 0.0 ? static_cast<float>(options.ao_distance) : 0.1f * diagonal;
+    out.two_sided = options.two_sided;
+    out.stop = options.stop;
+    out.relative_error_of_mean = options.error / normal_quantile(0.5 + 0.5 * options.confidence);
+    return out;
+}
+
+std::string megabytes(std::uint64_t bytes) { return std::to_string((bytes + (1u << 20) - 1) >> 20) + " MB"; }
+
+// Packs the charts so that the largest page fits the memory that the scene leaves. Pages shrink by halves.
+Result<Atlas> make_atlas_within_memory(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts,
+                                       ChartOptions options, std::uint64_t max_memory, BakeReport& report,
+                                       Context& context) {
+    constexpr std::uint32_t kSmallestPage = 256;
+    const std::uint64_t fixed = scene_memory(scene, geometry);
+    const bool one_page = charts.scene_wide || options.resolution_width != 0;
+    if (max_memory != 0 && !one_page)
+        while (options.max_page > kSmallestPage && fixed + page_memory({options.max_page, options.max_page}) > max_memory)
+            options.max_page /= 2;
+    LUMEL_TRY(Atlas atlas, make_atlas(scene, geometry, charts, options, context));
+    report.predicted_memory_bytes = fixed + largest_page_memory(atlas);
+    if (max_memory != 0 && report.predicted_memory_bytes > max_memory) {
+        const std::string remedy = one_page ? "a single page cannot be split: lower --resolution or use --uv1 ignore"
+                                            : "raise --max-memory or lower --texels-per-metre";
+        return Error{ErrorCode::out_of_memory,
+                     "this bake needs about " + megabytes(report.predicted_memory_bytes) + " but --max-memory allows " +
+                         megabytes(max_memory),
+                     scene.source, remedy};
+    }
+    return atlas;
+}
+
+// Running totals over all pages for the report's error estimate.
+struct Totals {
+    double variance = 0.0, irradiance[3] = {0, 0, 0};
+    std::uint64_t texels = 0;
+
+    void add(const Lightmap& map) {
+        for (std::size_t i = 0; i < map.texels.size(); ++i) {
+            if (map.coverage[i] != Coverage::baked) continue;
+            ++texels;
+            for (std::size_t c = 0; c < 3; ++c) {
+                variance += static_cast<double>(map.texels.variance[i][c]);
+                for (const LayerMoments& layer : map.texels.layers[i])
+                    irradiance[c] += static_cast<double>(layer.irradiance[c]);
+            }
+        }
+    }
+    void store(BakeReport& report) const {
+        if (texels == 0) return;
+        const double n = static_cast<double>(texels);
+        double mean = 0.0;
+        for (std::size_t c = 0; c < 3; ++c) {
+            report.mean_irradiance[c] = irradiance[c] / n;
+            mean += report.mean_irradiance[c] / 3.0;
+        }
+        if (mean > 0.0) report.estimated_nrmse = std::sqrt(variance / (3.0 * n)) / mean;
+    }
+};
+
+PageReport page_report(const Lightmap& map, const TexelBuffer& buffer) {
+    PageReport page;
+    page.page = map.page;
+    page.width = map.width;
+    page.height = map.height;
+    page.texels = buffer.size();
+    for (const Coverage coverage : map.coverage) {
+        page.filled += coverage == Coverage::filled;
+        page.dilated += coverage == Coverage::dilated;
+    }
+    for (std::size_t i = 0; i < buffer.size(); ++i) page.invalid += map.coverage[i] != Coverage::baked;
+    page.coverage = static_cast<double>(page.texels - page.invalid) /
+                    static_cast<double>(std::uint64_t{page.width} * page.height);
+    return page;
+}
+
+void scale_layers(RadianceSums& sums, double direct, double indirect) {
+    if (direct == 1.0 && indirect == 1.0) return;
+    for (std::size_t i = 0; i < sums.size(); ++i)
+        for (std::size_t l = 0; l < kLayerCount; ++l) {
+            const bool bounced = l == static_cast<std::size_t>(Layer::indirect);
+            const float factor = static_cast<float>(bounced ? indirect : direct);
+            for (Vec3& coefficient : sums.layers[i][l].sh) coefficient *= factor;
+            sums.layers[i][l].irradiance *= factor;
+        }
+}
+
+}  // namespace
+
+Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const BakeSink& sink, Context& context) {
+    BakeReport report;
+    report.threads = context.threads();
+
+    LUMEL_TRY_STATUS(validate(scene));
+    LUMEL_TRY(const WorldGeometry geometry, flatten(scene, context));
+    report.input_hash = hash_scene(scene).hex();
+    const SurfaceReader surfaces(scene, geometry);
+    const LightSet lights(scene, geometry, surfaces);
+    if (lights.empty())
+        return Error{ErrorCode::invalid_input, "the scene has no light, no emissive surface and no sky", scene.source,
+                     "give it a sky, for example --sky 1,1,1, or a sun with --sun-direction"};
+
+    ChartSet charts;
+    Atlas atlas;
+    {
+        const StageTimer timer(report, "charts");
+        LUMEL_TRY(charts, make_charts(scene, geometry, chart_options(options), context));
+    }
+    {
+        const StageTimer timer(report, "atlas");
+        LUMEL_TRY(atlas, make_atlas_within_memory(scene, geometry, charts, chart_options(options),
+                                                  options.max_memory_bytes, report, context));
+    }
+    if (atlas.pages.empty())
+        return Error{ErrorCode::invalid_input, "no surface of the scene gets lightmap texels", scene.source,
+                     "every node is of another class than lightmap: see lumel info"};
+    LUMEL_TRY_STATUS(sink.layout(geometry, charts, atlas));
+
+    std::unique_ptr<Tracer> tracer;
+    {
+        const StageTimer timer(report, "acceleration");
+        LUMEL_TRY(tracer, make_embree_tracer(geometry, surfaces, context));
+    }
+    const Transport transport{scene, geometry, surfaces, lights, *tracer};
+    const PathOptions path = path_options(options, geometry);
+    const auto by_page = triangles_by_page(scene, geometry, charts, atlas);
+
+    Totals totals;
+    for (std::uint32_t page = 0; page < atlas.pages.size(); ++page) {
+        TexelBuffer texels;
+        RadianceSums sums;
+        {
+            const StageTimer timer(report, "texels");
+            LUMEL_TRY(texels, rasterize_page(scene, geometry, charts, atlas, page, by_page[page], context));
+        }
+        {
+            const StageTimer timer(report, "trace");
+            LUMEL_TRY(sums, gather_page(texels, charts, atlas, transport, path, 0, texels.size(), context));
+            report.trace_wall_seconds += timer.seconds();
+        }
+        for (const std::uint32_t traced : sums.traced) report.samples += traced;
+        scale_layers(sums, options.direct_scale, options.indirect_scale);
+        Lightmap map;
+        {
+            const StageTimer timer(report, "post");
+            map = finish_page(texels, std::move(sums), options.dilate);
+        }
+        report.pages.push_back(page_report(map, texels));
+        totals.add(map);
+        texels = {};
+        const StageTimer timer(report, "write");
+        LUMEL_TRY_STATUS(sink.page(map));
+    }
+
+    for (const PageReport& page : report.pages) {
+        report.texels += page.texels;
+        report.invalid_texels += page.invalid;
+    }
+    totals.store(report);
+    const TraceStatistics statistics = tracer->statistics();
+    report.rays = statistics.rays;
+    report.tracer_seconds = statistics.seconds;
+    report.rays_per_second = report.trace_wall_seconds > 0.0 ? static_cast<double>(report.rays) / report.trace_wall_seconds : 0.0;
+    report.tracer = std::string(tracer->description());
+    report.triangles = geometry.triangle_count();
+    report.instances = scene.instances.size();
+    report.charts = atlas.placements.size();
+    report.texels_per_metre = atlas.texels_per_metre;
+    report.peak_memory_bytes = peak_memory();
+    return report;
+}
+
+}  // namespace lumel

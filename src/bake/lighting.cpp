@@ -1,0 +1,69 @@
+// Sky and sun of the options, and the artist's global controls, applied to a scene before anything is traced.
+#include <cmath>
+
+#include "base/try.h"
+#include "light/light_set.h"
+#include "lumel/bake.h"
+#include "math/constants.h"
+
+namespace lumel {
+namespace {
+
+constexpr double kDefaultSunIlluminance = 100000.0;  // lux: a clear noon
+constexpr float kRadians = kPi / 180.0f;
+
+Light make_sun(const SunOptions& options) {
+    Light sun;
+    sun.name = "--sun-direction";
+    sun.shape = LightShape::sun;
+    sun.direction = normalize(*options.direction);
+    const double lux = options.illuminance > 0.0 ? options.illuminance : kDefaultSunIlluminance;
+    sun.intensity = options.color * static_cast<float>(lux);
+    sun.angular_diameter = static_cast<float>(options.angle_degrees) * kRadians;
+    return sun;
+}
+
+void scale(Sky& sky, float factor) {
+    sky.color *= factor;
+    if (sky.map)
+        for (Vec3& radiance : sky.map->radiance) radiance *= factor;
+}
+
+}  // namespace
+
+Status apply_lighting(Scene& scene, const BakeOptions& options) {
+    if (options.sky.color) {
+        scene.sky = {};
+        scene.sky.color = *options.sky.color;
+    }
+    if (options.sky.color || !options.sky.file.empty()) {
+        scale(scene.sky, static_cast<float>(options.sky.intensity));
+        scene.sky.rotation = static_cast<float>(options.sky.rotation_degrees) * kRadians;
+    }
+    if (options.sky.extract_sun) {
+        if (!scene.sky.map)
+            return Error{ErrorCode::usage, "--sky-extract-sun needs a sky map", {}, "give one with --sky FILE"};
+        LUMEL_TRY(ExtractedSun extracted, extract_sun(*scene.sky.map));
+        scene.sky.map = std::move(extracted.sky);
+        // The map's frame turned into the world's.
+        const float c = std::cos(scene.sky.rotation), s = std::sin(scene.sky.rotation);
+        const Vec3 d = extracted.sun.direction;
+        extracted.sun.direction = {c * d.x + s * d.z, d.y, c * d.z - s * d.x};
+        scene.lights.push_back(extracted.sun);
+    }
+    if (options.sky.blur_degrees > 0.0 && scene.sky.map)
+        scene.sky.map = blur_sky(*scene.sky.map, static_cast<float>(options.sky.blur_degrees) * kRadians);
+    if (options.sun.direction) scene.lights.push_back(make_sun(options.sun));
+    return success();
+}
+
+PresetValues preset_values(Preset preset) {
+    switch (preset) {
+        case Preset::preview: return {0.25e6, 64};
+        case Preset::medium: return {2e6, 512};
+        case Preset::production: return {8e6, 4096};
+    }
+    return {2e6, 512};
+}
+
+}  // namespace lumel
