@@ -1,0 +1,67 @@
+// The baked instances flattened to world space: one index space of triangles for charts, rays, lights and texels.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/hash.h"
+#include "lumel/context.h"
+#include "lumel/result.h"
+#include "lumel/scene.h"
+
+namespace lumel {
+
+// What a ray needs to know of a triangle before it touches the material.
+enum TriangleFlags : std::uint8_t {
+    kDoubleSided = 1,    // both faces are lit and bounce
+    kNeedsAlpha = 2,     // MASK or BLEND: the tracer asks the material whether a hit counts
+    kOccluderOnly = 4,   // NodeClass::occluder: blocks, bounces nothing
+    kEmissive = 8,       // its material emits
+    kMirrored = 16,      // the instance has a negative determinant: the front is -cross(e1, e2)
+    kCurved = 32,        // some vertex normal differs from the face normal: smooth-shaded
+};
+
+struct WorldTriangle {
+    Triangle vertices;            // into the arrays below; corner order is the mesh's own, mirrored or not
+    std::uint32_t material = 0;   // into Scene::materials, never kNone
+    std::uint32_t instance = 0;   // into Scene::instances
+    std::uint32_t mesh_triangle = 0;
+    std::uint8_t flags = 0;
+};
+
+// Instances of class probe and ignored have no triangles here. Triangles of an instance are consecutive and in mesh order.
+struct WorldGeometry {
+    std::vector<Vec3> positions;
+    std::vector<Vec3> normals;  // unit vertex normals; the geometric normal's side is decided by the winding, not by these
+    std::vector<Vec2> uv0, uv1;  // one per vertex; zero where the mesh has none
+    std::vector<Vec4> colors;    // empty where no mesh has vertex colours
+    std::vector<WorldTriangle> triangles;
+    std::vector<std::uint32_t> first_triangle;  // per instance, plus one past the end
+    Vec3 bounds_min{}, bounds_max{};
+
+    [[nodiscard]] std::uint32_t triangle_count() const { return static_cast<std::uint32_t>(triangles.size()); }
+    [[nodiscard]] std::array<Vec3, 3> corners(std::uint32_t triangle) const {
+        const Triangle& v = triangles[triangle].vertices;
+        return {positions[v[0]], positions[v[1]], positions[v[2]]};
+    }
+    // Unit normal of the front face; zero for a zero-area triangle.
+    [[nodiscard]] Vec3 geometric_normal(std::uint32_t triangle) const;
+    // Interpolated vertex normal at barycentrics (1-b1-b2, b1, b2), unit, on the front side: where the file's normal
+    // points behind the face (n . n_g <= 0) it is the face normal. This is the normal that the runtime sees.
+    [[nodiscard]] Vec3 shading_normal(std::uint32_t triangle, float b1, float b2) const;
+    [[nodiscard]] Vec3 position(std::uint32_t triangle, float b1, float b2) const;
+    [[nodiscard]] float area(std::uint32_t triangle) const;
+};
+
+// Errors: invalid_input for non-finite world positions. Zero-area triangles are counted ("zero-area-triangle") and kept.
+Result<WorldGeometry> flatten(const Scene& scene, Context& context);
+
+// Hash of everything in the scene that a bake's result depends on.
+Hash128 hash_scene(const Scene& scene);
+
+// Checks what every later stage takes for granted: indices in range, all numbers finite, primitives cover the mesh,
+// unit directions, textures whole. For scenes built through the API as well as those read from a file.
+Status validate(const Scene& scene);
+
+}  // namespace lumel
