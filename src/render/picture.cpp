@@ -1,0 +1,184 @@
+#include "render/picture.h"
+
+#include <array>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "math/constants.h"
+#include "math/sampler.h"
+
+namespace lumel {
+namespace {
+
+constexpr std::uint32_t kFilmPair = 0xf11u;       // pair of dimensions of the position in the pixel
+constexpr int kMaxCulledFaces = 32;               // back faces that one camera ray may pass through
+constexpr std::uint64_t kPictureKey = 0x9c7u;     // keeps pixels' point sets apart from texels'
+
+class Lens {
+public:
+    Lens(const Camera& camera, const PictureOptions& options)
+        : camera_(camera),
+          tan_y_(std::tan(0.5f * camera.vertical_fov)),
+          tan_x_(tan_y_ * static_cast<float>(options.width) / static_cast<float>(options.height)),
+          inverse_width_(1.0f / static_cast<float>(options.width)),
+          inverse_height_(1.0f / static_cast<float>(options.height)) {}
+
+    [[nodiscard]] Ray ray(float x, float y) const {
+        const Vec3 local{(2.0f * x * inverse_width_ - 1.0f) * tan_x_, (1.0f - 2.0f * y * inverse_height_) * tan_y_, -1.0f};
+        Ray out;
+        out.origin = camera_.transform.translation;
+        out.direction = normalize(transform_vector(camera_.transform, local));
+        return out;
+    }
+
+private:
+    const Camera& camera_;
+    float tan_y_, tan_x_, inverse_width_, inverse_height_;
+};
+
+// The picture of one worker: up to 64 camera rays of one pixel at a time.
+class PixelTracer {
+public:
+    PixelTracer(const Transport& transport, const PathIntegrator& integrator, const PathOptions& path, const Lens& lens,
+                const PictureOptions& options, const BakedIrradiance* baked)
+        : transport_(transport),
+          integrator_(integrator),
+          path_(path),
+          lens_(lens),
+          options_(options),
+          baked_(baked),
+          workspace_(integrator.make_workspace()) {}
+
+    Vec3 pixel(std::uint32_t x, std::uint32_t y) {
+        const std::uint32_t key = sampler_key(path_.seed ^ (kPictureKey << 48), (std::uint64_t{y} << 32) | x);
+        Vec3 sum{}, lit{};
+        std::uint32_t lit_count = 0, surfaces = 0;
+        for (std::uint32_t base = 0; base < options_.samples; base += kWavefrontLanes) {
+            const std::uint32_t n = std::min<std::uint32_t>(kWavefrontLanes, options_.samples - base);
+            see(x, y, key, base, n);
+            std::uint32_t traced = 0;
+            for (std::uint32_t i = 0; i < n; ++i) sum += shade(i, traced);
+            surfaces += surfaces_;
+            lit += baked_light_;
+            lit_count += baked_count_;
+            path_trace(key, base, traced, lit, lit_count);
+        }
+        // Void paths leave the mean: the surfaces seen are lit by the mean of those that could be lit.
+        if (lit_count > 0) sum += lit * (static_cast<float>(surfaces) / static_cast<float>(lit_count));
+        return sum * (1.0f / static_cast<float>(options_.samples));
+    }
+
+private:
+    // Nearest visible surfaces, back faces of single-sided ones culled.
+    void see(std::uint32_t x, std::uint32_t y, std::uint32_t key, std::uint32_t base, std::uint32_t n) {
+        for (std::uint32_t i = 0; i < n; ++i) {
+            const Sampler sampler(key, base + i);
+            const Vec2 jitter = sampler.pair(kFilmPair);
+            rays_[i] = lens_.ray(static_cast<float>(x) + jitter.x, static_cast<float>(y) + jitter.y);
+            rays_[i].alpha_key = sampler.hash(kFilmPair);
+        }
+        transport_.tracer.closest(std::span(rays_).first(n), std::span(hits_).first(n));
+        for (std::uint32_t i = 0; i < n; ++i)
+            for (int pass = 0; pass < kMaxCulledFaces && culled(hits_[i]); ++pass) {
+                rays_[i].tmin = hits_[i].t * (1.0f + 4.0f * kFloatEpsilon) + 1e-6f;
+                rays_[i].skip = hits_[i].triangle;
+                transport_.tracer.closest(std::span(rays_).subspan(i, 1), std::span(hits_).subspan(i, 1));
+            }
+        surfaces_ = baked_count_ = 0;
+        baked_light_ = {};
+    }
+
+    [[nodiscard]] bool culled(const Hit& hit) const {
+        return !hit.missed() && hit.back_face && !(transport_.geometry.triangles[hit.triangle].flags & kDoubleSided);
+    }
+
+    // Emission or sky of sample i; queues its surface for path tracing unless the bake lights it.
+    Vec3 shade(std::uint32_t i, std::uint32_t& traced) {
+        const Hit& hit = hits_[i];
+        if (hit.missed()) return transport_.lights.has_sky() ? transport_.lights.sky(rays_[i].direction).radiance : Vec3{};
+        if (culled(hit)) return {};
+        ++surfaces_;
+        const Vec3 albedo = transport_.surfaces.albedo(hit.triangle, hit.b1, hit.b2);
+        const Vec3 emission = transport_.surfaces.emission(hit.triangle, hit.b1, hit.b2);
+        if (baked_ && !hit.back_face)
+            if (const std::optional<Vec3> irradiance = (*baked_)(hit.triangle, hit.b1, hit.b2)) {
+                ++baked_count_;
+                baked_light_ += albedo * *irradiance;
+                return emission;
+            }
+        points_[traced] = {hit.triangle, hit.b1, hit.b2};
+        sides_[traced] = hit.back_face;
+        albedo_[traced] = albedo;
+        lane_[traced] = i;
+        ++traced;
+        return emission;
+    }
+
+    void path_trace(std::uint32_t key, std::uint32_t base, std::uint32_t n, Vec3& lit, std::uint32_t& lit_count) {
+        if (n == 0) return;
+        integrator_.surface_starts(std::span(points_).first(n), std::span(sides_).first(n), *workspace_, surface_);
+        for (std::uint32_t k = 0; k < n; ++k) starts_[k] = {surface_[k].origin, surface_[k].normal, key, base + lane_[k]};
+        integrator_.gather_irradiance(std::span(starts_).first(n), *workspace_, std::span(irradiance_).first(n),
+                                      std::span(valid_).first(n));
+        for (std::uint32_t k = 0; k < n; ++k) {
+            if (!valid_[k]) continue;
+            lit += albedo_[k] * irradiance_[k];
+            ++lit_count;
+        }
+    }
+
+    const Transport& transport_;
+    const PathIntegrator& integrator_;
+    const PathOptions& path_;
+    const Lens& lens_;
+    const PictureOptions& options_;
+    const BakedIrradiance* baked_;
+    std::unique_ptr<PathIntegrator::Workspace> workspace_;
+
+    std::array<Ray, kWavefrontLanes> rays_;
+    std::array<Hit, kWavefrontLanes> hits_;
+    std::array<SamplePoint, kWavefrontLanes> points_;
+    std::array<std::uint8_t, kWavefrontLanes> sides_{}, valid_{};
+    std::array<std::uint32_t, kWavefrontLanes> lane_{};
+    std::array<Vec3, kWavefrontLanes> albedo_, irradiance_;
+    std::array<SurfaceStart, kWavefrontLanes> surface_;
+    std::array<PathStart, kWavefrontLanes> starts_;
+    std::uint32_t surfaces_ = 0, baked_count_ = 0;
+    Vec3 baked_light_{};
+};
+
+}  // namespace
+
+Camera look_at(Vec3 eye, Vec3 target, float vertical_fov) {
+    Camera camera;
+    const Vec3 back = normalize_or(eye - target, {0, 0, 1});
+    const Vec3 right = normalize_or(cross({0, 1, 0}, back), {1, 0, 0});
+    camera.transform = {{right, cross(back, right), back}, eye};
+    camera.vertical_fov = vertical_fov;
+    return camera;
+}
+
+Result<Image> render_picture(const Transport& transport, const PathOptions& path, const Camera& camera,
+                             const PictureOptions& options, const BakedIrradiance* baked, Context& context) {
+    Image image(options.width, options.height, 3);
+    const PathIntegrator integrator(transport, path);
+    const Lens lens(camera, options);
+    std::vector<std::unique_ptr<PixelTracer>> tracers(context.threads());
+    for (auto& tracer : tracers)
+        tracer = std::make_unique<PixelTracer>(transport, integrator, path, lens, options, baked);
+    const bool done = parallel_for(
+        context, std::size_t{options.width} * options.height, 32,
+        [&](const ChunkRange& range) {
+            for (std::size_t i = range.begin; i < range.end; ++i) {
+                const auto x = static_cast<std::uint32_t>(i % options.width);
+                const auto y = static_cast<std::uint32_t>(i / options.width);
+                const Vec3 color = tracers[range.worker]->pixel(x, y);
+                for (std::size_t c = 0; c < 3; ++c) image.at(x, y)[c] = color[c];
+            }
+        },
+        "render");
+    if (!done) return Error{ErrorCode::cancelled, "the render was cancelled", {}, {}};
+    return image;
+}
+
+}  // namespace lumel
