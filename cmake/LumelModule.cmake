@@ -1,24 +1,47 @@
-# lumel_module(name [LIBS third-party...]): every .cpp of src/<name> but *_test.cpp becomes the object library
-# lumel_<name>; each *_test.cpp joins the test program test_<name>. Who may include whom is in src/LAYERS, checked by
-# tests/layers.
+# lumel_module(name [LIBS third-party...] [HEADER_LIBS third-party...] [TEST_LIBS ...]): every .cpp of src/<name> but
+# *_test.cpp becomes the object library lumel_<name>; each *_test.cpp joins the test program test_<name>, and each
+# *_long_test.cpp test_<name>_long, which runs with the label `long`. LIBS are linked by whoever links lumel; HEADER_LIBS
+# have nothing to link. Who may include whom is in src/LAYERS, checked by tests/layers.
 function(lumel_module name)
-  cmake_parse_arguments(arg "" "" "LIBS;TEST_LIBS" ${ARGN})
+  cmake_parse_arguments(arg "" "" "LIBS;HEADER_LIBS;TEST_LIBS" ${ARGN})
   set(dir ${PROJECT_SOURCE_DIR}/src/${name})
   file(GLOB sources CONFIGURE_DEPENDS ${dir}/*.cpp)
   file(GLOB headers CONFIGURE_DEPENDS ${dir}/*.h)
   set(tests ${sources})
   list(FILTER tests INCLUDE REGEX "_test\\.cpp$")
+  set(long_tests ${tests})
+  list(FILTER long_tests INCLUDE REGEX "_long_test\\.cpp$")
+  list(FILTER tests EXCLUDE REGEX "_long_test\\.cpp$")
   list(FILTER sources EXCLUDE REGEX "_test\\.cpp$")
   if(sources)
     add_library(lumel_${name} OBJECT ${sources} ${headers})
-    target_link_libraries(lumel_${name} PRIVATE lumel_options ${arg_LIBS})
+    target_link_libraries(lumel_${name} PRIVATE lumel_options ${arg_LIBS} ${arg_HEADER_LIBS})
     target_sources(lumel PRIVATE $<TARGET_OBJECTS:lumel_${name}>)
     target_link_libraries(lumel PRIVATE ${arg_LIBS})
   endif()
-  if(tests AND LUMEL_TESTS)
-    add_executable(test_${name} ${tests})
-    target_link_libraries(test_${name} PRIVATE lumel lumel_options lumel_test_support GTest::gtest GTest::gtest_main
-      ${arg_LIBS} ${arg_TEST_LIBS})
-    gtest_discover_tests(test_${name} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS quick TIMEOUT 300)
+  if(NOT LUMEL_TESTS)
+    return()
   endif()
+  set(libs ${arg_LIBS} ${arg_HEADER_LIBS} ${arg_TEST_LIBS})
+  lumel_test_program(test_${name} quick "${tests}" "${libs}")
+  lumel_test_program(test_${name}_long long "${long_tests}" "${libs}")
+endfunction()
+
+function(lumel_test_program program label sources libs)
+  if(sources)
+    add_executable(${program} ${sources})
+    target_link_libraries(${program} PRIVATE lumel lumel_options lumel_test_support GTest::gtest GTest::gtest_main
+      ${libs})
+    lumel_discover_tests(${program} ${label})
+  endif()
+endfunction()
+
+# Each TEST of a gtest program becomes a ctest of the given label: `quick` is what scripts/test runs, `long` what
+# scripts/test --long adds. A sanitizer makes a program ten times slower, and its time limit longer.
+function(lumel_discover_tests program label)
+  set(seconds 300)
+  if(LUMEL_SANITIZE)
+    set(seconds 1500)
+  endif()
+  gtest_discover_tests(${program} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${label} TIMEOUT ${seconds})
 endfunction()
