@@ -84,8 +84,10 @@ PathIntegrator::PathIntegrator(const Transport& transport, const PathOptions& op
 
 PathIntegrator::~PathIntegrator() = default;
 
-std::unique_ptr<PathIntegrator::Workspace> PathIntegrator::make_workspace() const {
-    auto workspace = std::make_unique<Workspace>();
+void PathIntegrator::WorkspaceDeleter::operator()(Workspace* workspace) const { delete workspace; }
+
+PathIntegrator::WorkspacePtr PathIntegrator::make_workspace() const {
+    WorkspacePtr workspace(new Workspace);
     const std::size_t events = kWavefrontLanes * (2 + transport_.lights.sun_count());
     workspace->shadow_rays.reserve(events);
     workspace->pending.reserve(events);
@@ -532,7 +534,7 @@ Result<RadianceSums> gather_page(const TexelBuffer& texels, const ChartSet& char
     RadianceSums sums;
     sums.resize(texels.size());
     const PathIntegrator integrator(transport, options);
-    std::vector<std::unique_ptr<PathIntegrator::Workspace>> workspaces(context.threads());
+    std::vector<PathIntegrator::WorkspacePtr> workspaces(context.threads());
     for (auto& workspace : workspaces) workspace = integrator.make_workspace();
 
     // Small enough that a cancelled bake stops within a fraction of a second.

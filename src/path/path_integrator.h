@@ -61,7 +61,11 @@ public:
 
     // Scratch memory of one thread; nothing is allocated per sample.
     class Workspace;
-    [[nodiscard]] std::unique_ptr<Workspace> make_workspace() const;
+    struct WorkspaceDeleter {
+        void operator()(Workspace* workspace) const;
+    };
+    using WorkspacePtr = std::unique_ptr<Workspace, WorkspaceDeleter>;
+    [[nodiscard]] WorkspacePtr make_workspace() const;
 
     // Gathers all samples of one texel into out[index]. `id` names the texel for good (page and position), whatever
     // range, thread or shard it is baked in. Stops early, leaving the texel untouched, if `cancelled` turns true.

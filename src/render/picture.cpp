@@ -133,7 +133,7 @@ private:
     const Lens& lens_;
     const PictureOptions& options_;
     const BakedIrradiance* baked_;
-    std::unique_ptr<PathIntegrator::Workspace> workspace_;
+    PathIntegrator::WorkspacePtr workspace_;
 
     std::array<Ray, kWavefrontLanes> rays_;
     std::array<Hit, kWavefrontLanes> hits_;
