@@ -1,0 +1,36 @@
+// The decoders behind read_image, one file each. All take foreign bytes: every size is checked before it is allocated,
+// truncation is an error, and no image may be larger than the file could have described.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "image/image.h"
+#include "io/image_io.h"
+#include "lumel/result.h"
+
+namespace lumel {
+
+inline constexpr std::uint32_t kMaxImageEdge = 16384;
+inline constexpr std::uint32_t kMaxTextureEdge = 8192;
+
+// What the first bytes say the file is.
+enum class ImageFormat : std::uint8_t { unknown, png, jpeg, hdr, exr, pfm };
+ImageFormat image_format(std::span<const std::byte> bytes);
+
+// Width and height positive and at most max_edge; values (pixels times channels) not beyond 64 M plus 128 for each byte
+// of the file: the tightest codec here seldom does better, and a hostile header asks for far more.
+Status check_image_size(std::uint64_t width, std::uint64_t height, std::uint64_t channels, std::uint32_t max_edge,
+                        std::size_t file_bytes, const std::string& where);
+
+Result<Image> decode_stb(std::span<const std::byte> bytes, const std::string& where);
+Result<Image> decode_hdr(std::span<const std::byte> bytes, const std::string& where);
+Result<Image> decode_pfm(std::span<const std::byte> bytes, const std::string& where);
+Result<Image> decode_exr(std::span<const std::byte> bytes, const std::string& where);
+// Empty `names` means all.
+Result<NamedChannels> decode_exr_channels(std::span<const std::byte> bytes, std::span<const std::string> names,
+                                          const std::string& where);
+
+}  // namespace lumel
