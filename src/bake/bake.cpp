@@ -214,10 +214,12 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
     Totals totals;
     for (std::uint32_t page = 0; page < atlas.pages.size(); ++page) {
         TexelBuffer texels;
+        TexelSurface surface;
         RadianceSums sums;
         {
             const StageTimer timer(report, "texels");
             LUMEL_TRY(texels, rasterize_page(scene, geometry, charts, atlas, page, by_page[page], context));
+            LUMEL_TRY(surface, read_texel_surface(texels, scene, geometry, charts, atlas, context));
         }
         {
             const StageTimer timer(report, "trace");
@@ -229,7 +231,7 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
         Lightmap map;
         {
             const StageTimer timer(report, "post");
-            map = finish_page(texels, std::move(sums), options.dilate);
+            map = finish_page(texels, std::move(sums), std::move(surface), options.dilate);
         }
         report.pages.push_back(page_report(map, texels));
         totals.add(map);

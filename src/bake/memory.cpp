@@ -15,7 +15,7 @@ constexpr std::uint64_t kProgramBytes = 64u << 20;  // code, libraries, allocato
 
 // One covered texel: RadianceSums entry, TexelBuffer entry and its share of triangle lists.
 constexpr std::uint64_t kBytesPerTexel =
-    kLayerCount * sizeof(LayerMoments) + 2 * sizeof(Vec3) + 4 * sizeof(float) + 80;
+    kLayerCount * sizeof(LayerMoments) + 4 * sizeof(Vec3) + 4 * sizeof(float) + 80;
 
 }  // namespace
 

@@ -1,5 +1,6 @@
 #include <array>
 #include <cstddef>
+#include <utility>
 
 #include "base/check.h"
 #include "post/lightmap.h"
@@ -22,10 +23,11 @@ void for_each_neighbour(const Lightmap& map, std::uint32_t x, std::uint32_t y, V
     }
 }
 
-// Mean of several texels, written over `target`. Sample counts are not averaged: a filled texel was not sampled.
+// Mean of several texels' light, written over a texel. Sample counts are not averaged: a filled texel was not sampled.
 class Average {
 public:
-    void add(const RadianceSums& from, std::size_t i) {
+    void add(const Lightmap& map, std::size_t i) {
+        const RadianceSums& from = map.texels;
         ++n_;
         for (std::size_t l = 0; l < kLayerCount; ++l) {
             for (std::size_t k = 0; k < kShCoefficients; ++k) layers_[l].sh[k] += from.layers[i][l].sh[k];
@@ -35,9 +37,11 @@ public:
         bent_ += from.bent_normal[i];
         sky_ += from.sky_visibility[i];
         occlusion_ += from.ambient_occlusion[i];
+        albedo_ += map.surface.albedo[i];
+        emission_ += map.surface.emission[i];
     }
     [[nodiscard]] bool empty() const { return n_ == 0; }
-    void store(RadianceSums& to, std::size_t i) const {
+    void store_light(RadianceSums& to, std::size_t i) const {
         const float s = 1.0f / static_cast<float>(n_);
         for (std::size_t l = 0; l < kLayerCount; ++l) {
             for (std::size_t k = 0; k < kShCoefficients; ++k) to.layers[i][l].sh[k] = layers_[l].sh[k] * s;
@@ -48,11 +52,15 @@ public:
         to.sky_visibility[i] = sky_ * s;
         to.ambient_occlusion[i] = occlusion_ * s;
     }
+    void store_surface(TexelSurface& to, std::size_t i) const {
+        to.albedo[i] = albedo_ * (1.0f / static_cast<float>(n_));
+        to.emission[i] = emission_ * (1.0f / static_cast<float>(n_));
+    }
 
 private:
     std::uint32_t n_ = 0;
     std::array<LayerMoments, kLayerCount> layers_{};
-    Vec3 variance_{}, bent_{};
+    Vec3 variance_{}, bent_{}, albedo_{}, emission_{};
     float sky_ = 0.0f, occlusion_ = 0.0f;
 };
 
@@ -60,67 +68,64 @@ struct Pixel {
     std::uint32_t x, y;
 };
 
-// Gives each candidate that has a usable 3x3 neighbour the mean of those, all at once (the order does not matter), and
-// stores it in texel place(candidate index).
-template <class Usable, class Place>
-void average_ring(Lightmap& map, const std::vector<Pixel>& candidates, Usable&& usable, Place&& place) {
-    std::vector<std::size_t> filled;
-    std::vector<Average> values;
-    for (std::size_t c = 0; c < candidates.size(); ++c) {
+// Means of the 3x3 neighbours that have a value, for those pixels that have such neighbours. All are taken before any is
+// stored, so the order of pixels does not matter.
+std::vector<std::pair<Pixel, Average>> average_ring(const Lightmap& map, const std::vector<Pixel>& pixels) {
+    std::vector<std::pair<Pixel, Average>> out;
+    for (const Pixel& p : pixels) {
         Average average;
-        for_each_neighbour(map, candidates[c].x, candidates[c].y, [&](std::uint32_t texel) {
-            if (usable(texel)) average.add(map.texels, texel);
+        for_each_neighbour(map, p.x, p.y, [&](std::uint32_t texel) {
+            if (map.coverage[texel] != Coverage::none) average.add(map, texel);
         });
-        if (average.empty()) continue;
-        filled.push_back(c);
-        values.push_back(average);
+        if (!average.empty()) out.emplace_back(p, average);
     }
-    for (std::size_t k = 0; k < filled.size(); ++k) values[k].store(map.texels, place(filled[k]));
+    return out;
 }
 
-// Invalid texels take the mean of their valid neighbours, ring by ring inwards.
+// Invalid texels take the mean of their valid neighbours, ring by ring inwards. Their surface is their own.
 void fill_invalid(Lightmap& map, const TexelBuffer& buffer) {
     std::vector<Pixel> open;
     for (std::size_t i = 0; i < buffer.size(); ++i)
         if (map.coverage[i] == Coverage::none) open.push_back({buffer.x[i], buffer.y[i]});
     const auto texel = [&](const Pixel& p) { return map.texel_at[std::size_t{p.y} * map.width + p.x]; };
     while (!open.empty()) {
-        // Marked only after the whole ring is done, so that a ring sees the ring before it and not itself.
-        std::vector<std::uint32_t> marked;
-        average_ring(
-            map, open, [&](std::uint32_t t) { return map.coverage[t] != Coverage::none; },
-            [&](std::size_t c) { return marked.emplace_back(texel(open[c])); });
-        if (marked.empty()) return;
-        for (const std::uint32_t t : marked) map.coverage[t] = Coverage::filled;
+        const auto ring = average_ring(map, open);
+        if (ring.empty()) return;
+        for (const auto& [pixel, average] : ring) {
+            average.store_light(map.texels, texel(pixel));
+            map.coverage[texel(pixel)] = Coverage::filled;
+        }
         std::erase_if(open, [&](const Pixel& p) { return map.coverage[texel(p)] != Coverage::none; });
     }
 }
 
 // One ring of new texels around all that have a value.
 void dilate_once(Lightmap& map) {
-    std::vector<Pixel> ring;
+    std::vector<Pixel> border;
     for (std::uint32_t y = 0; y < map.height; ++y)
         for (std::uint32_t x = 0; x < map.width; ++x) {
             if (map.texel_at[std::size_t{y} * map.width + x] != kNone) continue;
             bool touches = false;
             for_each_neighbour(map, x, y, [&](std::uint32_t t) { touches |= map.coverage[t] != Coverage::none; });
-            if (touches) ring.push_back({x, y});
+            if (touches) border.push_back({x, y});
         }
-    const std::size_t first = map.texels.size();
-    map.texels.resize(first + ring.size());
-    map.coverage.resize(first + ring.size(), Coverage::none);
-    average_ring(
-        map, ring, [&](std::uint32_t t) { return map.coverage[t] != Coverage::none; },
-        [&](std::size_t c) { return first + c; });
-    for (std::size_t c = 0; c < ring.size(); ++c) {
-        map.coverage[first + c] = Coverage::dilated;
-        map.texel_at[std::size_t{ring[c].y} * map.width + ring[c].x] = static_cast<std::uint32_t>(first + c);
+    const auto ring = average_ring(map, border);
+    std::size_t next = map.texels.size();
+    map.texels.resize(next + ring.size());
+    map.surface.albedo.resize(next + ring.size());
+    map.surface.emission.resize(next + ring.size());
+    map.coverage.resize(next + ring.size(), Coverage::none);
+    for (const auto& [pixel, average] : ring) {
+        average.store_light(map.texels, next);
+        average.store_surface(map.surface, next);
+        map.coverage[next] = Coverage::dilated;
+        map.texel_at[std::size_t{pixel.y} * map.width + pixel.x] = static_cast<std::uint32_t>(next++);
     }
 }
 
 }  // namespace
 
-Lightmap finish_page(const TexelBuffer& buffer, RadianceSums sums, std::uint32_t rings) {
+Lightmap finish_page(const TexelBuffer& buffer, RadianceSums sums, TexelSurface surface, std::uint32_t rings) {
     LUMEL_CHECK(sums.size() == buffer.size(), sums.size(), buffer.size());
     Lightmap map;
     map.page = buffer.page;
@@ -128,6 +133,7 @@ Lightmap finish_page(const TexelBuffer& buffer, RadianceSums sums, std::uint32_t
     map.height = buffer.height;
     map.texel_at = buffer.texel_at;
     map.texels = std::move(sums);
+    map.surface = std::move(surface);
     map.coverage.assign(buffer.size(), Coverage::none);
     for (std::size_t i = 0; i < buffer.size(); ++i)
         if (map.texels.valid(i)) map.coverage[i] = Coverage::baked;

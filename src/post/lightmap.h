@@ -6,6 +6,7 @@
 
 #include "path/radiance_sums.h"
 #include "texel/texel_buffer.h"
+#include "texel/texel_surface.h"
 
 namespace lumel {
 
@@ -16,11 +17,12 @@ struct Lightmap {
     std::uint32_t page = 0, width = 0, height = 0;
     std::vector<std::uint32_t> texel_at;  // width*height: index into the arrays of `texels`, or kNone
     RadianceSums texels;                  // baked texels first (in TexelBuffer order), then dilated ones
+    TexelSurface surface;                 // per texel
     std::vector<Coverage> coverage;       // per texel
 };
 
 // Fills invalid texels from their valid 3x3 neighbours (repeated until nothing changes), then dilates `rings` rings
 // around the charts. Both by coverage.
-Lightmap finish_page(const TexelBuffer& buffer, RadianceSums sums, std::uint32_t rings);
+Lightmap finish_page(const TexelBuffer& buffer, RadianceSums sums, TexelSurface surface, std::uint32_t rings);
 
 }  // namespace lumel
