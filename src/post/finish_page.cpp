@@ -1,6 +1,7 @@
 #include <array>
 #include <cstddef>
 #include <utility>
+#include <vector>
 
 #include "base/check.h"
 #include "post/lightmap.h"
@@ -68,58 +69,59 @@ struct Pixel {
     std::uint32_t x, y;
 };
 
-// Means of the 3x3 neighbours that have a value, for those pixels that have such neighbours. All are taken before any is
-// stored, so the order of pixels does not matter.
-std::vector<std::pair<Pixel, Average>> average_ring(const Lightmap& map, const std::vector<Pixel>& pixels) {
-    std::vector<std::pair<Pixel, Average>> out;
-    for (const Pixel& p : pixels) {
-        Average average;
-        for_each_neighbour(map, p.x, p.y, [&](std::uint32_t texel) {
-            if (map.coverage[texel] != Coverage::none) average.add(map, texel);
-        });
-        if (!average.empty()) out.emplace_back(p, average);
-    }
-    return out;
+// Mean of the 3x3 neighbours that have a value.
+Average average_around(const Lightmap& map, Pixel p) {
+    Average average;
+    for_each_neighbour(map, p.x, p.y, [&](std::uint32_t texel) {
+        if (map.coverage[texel] != Coverage::none) average.add(map, texel);
+    });
+    return average;
 }
 
-// Invalid texels take the mean of their valid neighbours, ring by ring inwards. Their surface is their own.
+// Invalid texels take the mean of their valid neighbours, ring by ring inwards. Their surface is their own. A ring is
+// marked only when all of it has been stored, so that it sees the ring before and not itself.
 void fill_invalid(Lightmap& map, const TexelBuffer& buffer) {
     std::vector<Pixel> open;
     for (std::size_t i = 0; i < buffer.size(); ++i)
         if (map.coverage[i] == Coverage::none) open.push_back({buffer.x[i], buffer.y[i]});
-    const auto texel = [&](const Pixel& p) { return map.texel_at[std::size_t{p.y} * map.width + p.x]; };
+    const auto texel = [&](Pixel p) { return map.texel_at[std::size_t{p.y} * map.width + p.x]; };
     while (!open.empty()) {
-        const auto ring = average_ring(map, open);
-        if (ring.empty()) return;
-        for (const auto& [pixel, average] : ring) {
-            average.store_light(map.texels, texel(pixel));
-            map.coverage[texel(pixel)] = Coverage::filled;
+        std::vector<std::uint32_t> ring;
+        for (const Pixel& p : open) {
+            const Average average = average_around(map, p);
+            if (average.empty()) continue;
+            average.store_light(map.texels, texel(p));
+            ring.push_back(texel(p));
         }
+        if (ring.empty()) return;
+        for (const std::uint32_t t : ring) map.coverage[t] = Coverage::filled;
         std::erase_if(open, [&](const Pixel& p) { return map.coverage[texel(p)] != Coverage::none; });
     }
 }
 
 // One ring of new texels around all that have a value.
 void dilate_once(Lightmap& map) {
-    std::vector<Pixel> border;
+    std::vector<Pixel> ring;
     for (std::uint32_t y = 0; y < map.height; ++y)
         for (std::uint32_t x = 0; x < map.width; ++x) {
             if (map.texel_at[std::size_t{y} * map.width + x] != kNone) continue;
             bool touches = false;
             for_each_neighbour(map, x, y, [&](std::uint32_t t) { touches |= map.coverage[t] != Coverage::none; });
-            if (touches) border.push_back({x, y});
+            if (touches) ring.push_back({x, y});
         }
-    const auto ring = average_ring(map, border);
-    std::size_t next = map.texels.size();
-    map.texels.resize(next + ring.size());
-    map.surface.albedo.resize(next + ring.size());
-    map.surface.emission.resize(next + ring.size());
-    map.coverage.resize(next + ring.size(), Coverage::none);
-    for (const auto& [pixel, average] : ring) {
-        average.store_light(map.texels, next);
-        average.store_surface(map.surface, next);
-        map.coverage[next] = Coverage::dilated;
-        map.texel_at[std::size_t{pixel.y} * map.width + pixel.x] = static_cast<std::uint32_t>(next++);
+    const std::size_t first = map.texels.size();
+    map.texels.resize(first + ring.size());
+    map.surface.albedo.resize(first + ring.size());
+    map.surface.emission.resize(first + ring.size());
+    map.coverage.resize(first + ring.size(), Coverage::none);
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+        const Average average = average_around(map, ring[k]);
+        average.store_light(map.texels, first + k);
+        average.store_surface(map.surface, first + k);
+    }
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+        map.coverage[first + k] = Coverage::dilated;
+        map.texel_at[std::size_t{ring[k].y} * map.width + ring[k].x] = static_cast<std::uint32_t>(first + k);
     }
 }
 
