@@ -106,26 +106,26 @@ TEST(Units, PiIsAppliedOnce) {
     EXPECT_STREQ(unit_name(LightUnit::e_over_pi), "E/pi");
 }
 
-TEST(Layers, IncludeAndScalesPickWhatIsSummed) {
+TEST(Layers, IncludePicksWhatIsSummed) {
     constexpr std::array<Vec3, 3> layers{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
     const auto value = [&](std::size_t i) { return layers[i]; };
-    EXPECT_EQ(sum_layers(layer_weights({}, 1, 1), value), (Vec3{1, 1, 1}));
-    EXPECT_EQ(sum_layers(layer_weights({.direct = false}, 2, 3), value), (Vec3{0, 2, 3}));
-    EXPECT_EQ(sum_layers(layer_weights({.sky = false, .indirect = false}, 2, 3), value), (Vec3{2, 0, 0}));
+    EXPECT_EQ(sum_layers(layer_weights({}), value), (Vec3{1, 1, 1}));
+    EXPECT_EQ(sum_layers(layer_weights({.direct = false}), value), (Vec3{0, 1, 1}));
+    EXPECT_EQ(sum_layers(layer_weights({.sky = false, .indirect = false}), value), (Vec3{1, 0, 0}));
+    EXPECT_EQ(sum_layers(LayerWeights{2, 0, 3}, value), (Vec3{2, 0, 3}));
 }
 
 TEST(Layers, AnExcludedLayerCannotLeak) {
     const float inf = std::numeric_limits<float>::infinity();
     const std::array<Vec3, 3> layers{Vec3{inf, inf, inf}, Vec3{1, 1, 1}, Vec3{2, 2, 2}};
-    EXPECT_EQ(sum_layers(layer_weights({.direct = false}, 1, 1), [&](std::size_t i) { return layers[i]; }),
-              (Vec3{3, 3, 3}));
+    EXPECT_EQ(sum_layers(layer_weights({.direct = false}), [&](std::size_t i) { return layers[i]; }), (Vec3{3, 3, 3}));
 }
 
 TEST(Layers, ShSumIsPerCoefficient) {
     const auto up = hemisphere_light(Vec3{1, 1, 1}, Vec3{0, 1, 0}),
                down = hemisphere_light(Vec3{1, 1, 1}, Vec3{0, -1, 0});
     const std::array<std::array<Vec3, 9>, 3> layers{up.c, down.c, up.c};
-    const auto sum = sum_sh_layers(layer_weights({.indirect = false}, 1, 1),
+    const auto sum = sum_sh_layers(layer_weights({.indirect = false}),
                                    [&](std::size_t i) -> const std::array<Vec3, 9>& { return layers[i]; });
     // Two hemispheres make the full sphere of radiance 1: I = 1 for every normal.
     for (const Vec3 n : {kN7, Vec3{0, -1, 0}}) EXPECT_NEAR(irradiance_from_sh(sum, n).x, 1.0, kTolerance);

@@ -9,15 +9,12 @@
 
 namespace lumel {
 
-// How much of each layer a file holds, in the order direct, sky, indirect.
+// How much of each layer a file holds, in the order direct, sky, indirect. The artist's direct_scale and indirect_scale
+// are in the layers already.
 using LayerWeights = std::array<float, 3>;
 
-// 0 for a layer that is not included; else the artist's scale (direct_scale is that of first-hit light: direct and
-// sky).
-constexpr LayerWeights layer_weights(const Include& include, double direct_scale, double indirect_scale) {
-    return {include.direct ? static_cast<float>(direct_scale) : 0.0f,
-            include.sky ? static_cast<float>(direct_scale) : 0.0f,
-            include.indirect ? static_cast<float>(indirect_scale) : 0.0f};
+constexpr LayerWeights layer_weights(const Include& include) {
+    return {include.direct ? 1.0f : 0.0f, include.sky ? 1.0f : 0.0f, include.indirect ? 1.0f : 0.0f};
 }
 
 // Sum over layers of weight * value(layer). A layer of weight 0 is not read: what is excluded cannot leak in as 0 *
