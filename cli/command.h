@@ -1,0 +1,74 @@
+// What the commands of `lumel` share: exit codes, the context of a run, option groups.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+
+#include "lumel/lumel.h"
+
+namespace lumel::cli {
+
+enum Exit : int { kDone = 0, kFailed = 1, kUsage = 2 };
+
+// Prints "lumel: error: ..." and returns the exit code of the error.
+int fail(const Error& error);
+
+// A subcommand: `add` declares its options on the app and returns what runs when it was chosen.
+using Run = std::function<int()>;
+Run add_info(CLI::App& app);
+Run add_bake(CLI::App& app);
+Run add_render(CLI::App& app);
+Run add_compare(CLI::App& app);
+
+// Values that several commands parse -------------------------------------------------------------------------------
+
+// "1,2,3" -> Vec3. Error: usage.
+Result<Vec3> parse_vec3(const std::string& text, const std::string& option);
+// "640x360" -> width, height, each 1..16384. Error: usage.
+struct Size {
+    std::uint32_t width = 0, height = 0;
+};
+Result<Size> parse_size(const std::string& text, const std::string& option);
+// "4G", "512M", "100000". Error: usage.
+Result<std::uint64_t> parse_bytes(const std::string& text, const std::string& option);
+
+// Light and transport options, common to bake and render.
+class LightOptions {
+public:
+    void declare(CLI::App& app);
+    // Fills sky, sun, include, scales, bounces, seed, ao_distance, two_sided, threads.
+    Status read(BakeOptions& options) const;
+
+private:
+    std::string sky_, sun_direction_, sun_color_ = "1,1,1", include_ = "direct,sky,indirect";
+    std::string sun_illuminance_text_;
+    BakeOptions values_;
+};
+
+// Loads the scene, then the sky map that the options name, and applies sky and sun. The scene's own sun angle defaults etc.
+// stay as the file says.
+class RunContext;
+
+// How progress is shown.
+enum class ProgressStyle { automatic, plain, json, none };
+void declare_progress(CLI::App& app, std::string& style);
+
+// A Context with progress on standard error and Ctrl-C bound to request_cancel() for its lifetime.
+class RunContext {
+public:
+    RunContext(unsigned threads, const std::string& progress_style);
+    ~RunContext();
+    RunContext(const RunContext&) = delete;
+    RunContext& operator=(const RunContext&) = delete;
+    [[nodiscard]] Context& get() { return context_; }
+    // Ends the progress line, prints warnings.
+    void finish();
+
+private:
+    class Meter;
+    Context context_;
+    std::unique_ptr<Meter> meter_;
+};
+
+}  // namespace lumel::cli

@@ -1,0 +1,113 @@
+// lumel compare A B: how far image A is from reference B.
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "base/try.h"
+#include "command.h"
+#include "image/metrics.h"
+#include "io/image_io.h"
+
+namespace lumel::cli {
+namespace {
+
+struct Options {
+    std::string image, reference, mask, metric = "relmse";
+    double max_error = -1.0;
+    bool json = false;
+};
+
+// RGBA against RGB: alpha is not compared.
+Image first_channels(const Image& image, std::uint32_t channels) {
+    if (image.channels == channels) return image;
+    Image out(image.width, image.height, channels);
+    for (std::uint32_t y = 0; y < image.height; ++y)
+        for (std::uint32_t x = 0; x < image.width; ++x)
+            for (std::uint32_t c = 0; c < channels; ++c) out.at(x, y)[c] = image.at(x, y)[c];
+    return out;
+}
+
+Result<ImageMetrics> measure(const Options& options) {
+    LUMEL_TRY(Image image, read_image(options.image));
+    LUMEL_TRY(Image reference, read_image(options.reference));
+    const auto size = [](const Image& i) { return std::to_string(i.width) + "x" + std::to_string(i.height); };
+    if (image.width != reference.width || image.height != reference.height)
+        return Error{ErrorCode::invalid_input, "is " + size(image) + " but " + options.reference + " is " + size(reference),
+                     options.image, "images to compare must be of equal size"};
+    const std::uint32_t channels = std::min({image.channels, reference.channels, 3u});
+    Mask mask;
+    if (!options.mask.empty()) {
+        LUMEL_TRY(const Image mask_image, read_image(options.mask));
+        if (mask_image.width != image.width || mask_image.height != image.height)
+            return Error{ErrorCode::invalid_input, "the mask is " + size(mask_image) + " but the images are " + size(image),
+                         options.mask, {}};
+        mask = mask_from_image(mask_image);
+    }
+    ImageMetrics metrics = compare_images(first_channels(image, channels), first_channels(reference, channels), mask);
+    if (metrics.texels == 0)
+        return Error{ErrorCode::invalid_input, "the mask leaves no texel to compare", options.mask, {}};
+    return metrics;
+}
+
+// JSON has no infinity: such figures are null.
+nlohmann::ordered_json number(double value) {
+    return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+}
+
+nlohmann::ordered_json to_json(const ImageMetrics& m) {
+    nlohmann::ordered_json out{{"texels", m.texels},
+                               {"non_finite", m.non_finite},
+                               {"mean", number(m.mean)},
+                               {"reference_mean", number(m.reference_mean)},
+                               {"nrmse", number(m.nrmse)},
+                               {"relmse", number(m.relmse)},
+                               {"bias", number(m.bias)},
+                               {"relative_bias", number(m.relative_bias)},
+                               {"block_bias_p95", number(m.block_bias_p95)},
+                               {"median_relative_error", number(m.median_relative_error)},
+                               {"log_psnr", number(m.log_psnr)}};
+    for (const WorstTexel& texel : m.worst)
+        out["worst"].push_back({{"x", texel.x},
+                                {"y", texel.y},
+                                {"relative_squared_error", number(texel.relative_squared_error)},
+                                {"value", {texel.value[0], texel.value[1], texel.value[2]}},
+                                {"reference", {texel.reference[0], texel.reference[1], texel.reference[2]}}});
+    return out;
+}
+
+void print(const ImageMetrics& m) {
+    std::printf("texels            %llu (%llu not finite)\n", static_cast<unsigned long long>(m.texels),
+                static_cast<unsigned long long>(m.non_finite));
+    std::printf("mean              %.6g, reference %.6g\n", m.mean, m.reference_mean);
+    std::printf("nRMSE             %.6g\nrelMSE            %.6g\n", m.nrmse, m.relmse);
+    std::printf("bias              %+.6g (%+.4f %%)\nblock bias P95    %.4f %%\n", m.bias, 100.0 * m.relative_bias, 100.0 * m.block_bias_p95);
+    std::printf("median rel. error %.4f %%\nlog-PSNR          %.2f dB\n", 100.0 * m.median_relative_error, m.log_psnr);
+    for (const WorstTexel& t : m.worst)
+        std::printf("worst (%u, %u): %.4g %.4g %.4g, reference %.4g %.4g %.4g\n", t.x, t.y, static_cast<double>(t.value[0]),
+                    static_cast<double>(t.value[1]), static_cast<double>(t.value[2]), static_cast<double>(t.reference[0]),
+                    static_cast<double>(t.reference[1]), static_cast<double>(t.reference[2]));
+}
+
+}  // namespace
+
+Run add_compare(CLI::App& app) {
+    auto options = std::make_shared<Options>();
+    app.add_option("A", options->image, "Image: EXR, HDR, PFM or PNG")->required();
+    app.add_option("B", options->reference, "Reference image")->required();
+    app.add_option("--mask", options->mask, "Compare only where this image is white");
+    app.add_option("--metric", options->metric, "What --max-error looks at")->check(CLI::IsMember({"nrmse", "relmse"}));
+    app.add_option("--max-error", options->max_error, "Exit with 1 above this error")->check(CLI::NonNegativeNumber);
+    app.add_flag("--json", options->json, "Figures as JSON on standard output");
+    return [options] {
+        const Result<ImageMetrics> metrics = measure(*options);
+        if (!metrics.ok()) return fail(metrics.error());
+        if (options->json) std::printf("%s\n", to_json(*metrics).dump(1).c_str());
+        else print(*metrics);
+        const double error = options->metric == "nrmse" ? metrics->nrmse : metrics->relmse;
+        if (options->max_error < 0.0 || error <= options->max_error) return static_cast<int>(kDone);
+        std::fprintf(stderr, "lumel: %s %.6g is above %.6g\n", options->metric.c_str(), error, options->max_error);
+        return static_cast<int>(kFailed);
+    };
+}
+
+}  // namespace lumel::cli

@@ -1,0 +1,131 @@
+// lumel render: a picture of a scene, path-traced, or of the same view lit by a bake.
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <sstream>
+
+#include "base/try.h"
+#include "command.h"
+#include "image/tonemap.h"
+#include "io/baked.h"
+#include "io/image_io.h"
+#include "load.h"
+#include "render/picture.h"
+
+namespace lumel::cli {
+namespace {
+
+struct Options {
+    std::string scene, output, camera, baked, resolution = "640x360", progress;
+    double exposure = 0.0;
+    LightOptions light;
+};
+
+constexpr float kRadians = 0.01745329252f;
+
+// "eye;target;vfov_degrees", each point as x,y,z.
+Result<Camera> parse_camera(const std::string& text) {
+    std::istringstream parts(text);
+    std::string eye_text, target_text, fov_text;
+    std::getline(parts, eye_text, ';');
+    std::getline(parts, target_text, ';');
+    std::getline(parts, fov_text);
+    LUMEL_TRY(const Vec3 eye, parse_vec3(eye_text, "--camera"));
+    LUMEL_TRY(const Vec3 target, parse_vec3(target_text, "--camera"));
+    char* end = nullptr;
+    const float fov = fov_text.empty() ? 60.0f : std::strtof(fov_text.c_str(), &end);
+    if ((end && *end) || !(fov > 0.1f && fov < 179.0f))
+        return Error{ErrorCode::usage, "--camera: the vertical field of view must lie between 0.1 and 179 degrees", {}, {}};
+    return look_at(eye, target, fov * kRadians);
+}
+
+// A camera of the scene by name, "view K" (found automatically), a point of view, or the first there is.
+Result<Camera> find_camera(const std::string& text, const Transport& transport) {
+    if (text.find(';') != std::string::npos) return parse_camera(text);
+    for (const Camera& camera : transport.scene.cameras)
+        if (camera.name == text) return camera;
+    constexpr std::size_t kAutomaticViews = 4;
+    const auto views = choose_views(transport.scene, transport.geometry, transport.tracer, kAutomaticViews);
+    if (text.empty()) return views.front();
+    std::string known;
+    for (const Camera& camera : views) {
+        if (camera.name == text) return camera;
+        known += (known.empty() ? "'" : ", '") + camera.name + "'";
+    }
+    return Error{ErrorCode::usage, "--camera: there is no camera '" + text + "'", transport.scene.source,
+                 "known: " + known + ", or eye;target;vfov_degrees such as '0,1.7,4;0,1,0;60'"};
+}
+
+Status write_picture(const std::string& path, const Image& image, double exposure) {
+    const std::string extension = std::filesystem::path(path).extension().string();
+    if (extension == ".exr") return write_exr(path, image, ExrType::full);
+    if (extension == ".hdr") return write_hdr(path, image);
+    if (extension == ".pfm") return write_pfm(path, image);
+    if (extension == ".png") {
+        const float factor = exposure > 0.0 ? static_cast<float>(exposure) : auto_exposure(image);
+        return write_png(path, image.width, image.height, 3, tonemap(image, factor));
+    }
+    return Error{ErrorCode::usage, "-o: unknown picture format '" + extension + "'", path, "use .png, .exr, .hdr or .pfm"};
+}
+
+Status run(const Options& options) {
+    BakeOptions light;
+    LUMEL_TRY_STATUS(options.light.read(light));
+    LUMEL_TRY(const Size size, parse_size(options.resolution, "--resolution"));
+    RunContext run_context(light.threads, options.progress);
+    Context& context = run_context.get();
+    LUMEL_TRY(const LoadedScene loaded, load_lit_scene(options.scene, light, context));
+    const Scene& scene = loaded.scene;
+    LUMEL_TRY(const WorldGeometry geometry, flatten(scene, context));
+    const SurfaceReader surfaces(scene, geometry);
+    const LightSet lights(scene, geometry, surfaces);
+    if (lights.empty() && options.baked.empty())
+        return Error{ErrorCode::invalid_input, "the scene has no light, no emissive surface and no sky", scene.source,
+                     "give it a sky, for example --sky 1,1,1, or a sun with --sun-direction"};
+    LUMEL_TRY(const std::unique_ptr<Tracer> tracer, make_embree_tracer(geometry, surfaces, context));
+    const Transport transport{scene, geometry, surfaces, lights, *tracer};
+    LUMEL_TRY(const Camera camera, find_camera(options.camera, transport));
+
+    PathOptions path;
+    path.bounces = light.bounces;
+    path.seed = light.seed;
+    PictureOptions picture;
+    picture.width = size.width;
+    picture.height = size.height;
+    picture.samples = light.samples ? light.samples : 64;
+    Image image;
+    if (options.baked.empty()) {
+        LUMEL_TRY(image, render_picture(transport, path, camera, picture, nullptr, context));
+    } else {
+        LUMEL_TRY(const BakedLighting baked, read_baked(options.baked, scene, geometry));
+        const BakedIrradiance lookup = [&](std::uint32_t triangle, float b1, float b2) {
+            return baked.irradiance(triangle, b1, b2);
+        };
+        LUMEL_TRY(image, render_picture(transport, path, camera, picture, &lookup, context));
+    }
+    LUMEL_TRY_STATUS(write_picture(options.output, image, options.exposure));
+    run_context.finish();
+    std::printf("%s\n", options.output.c_str());
+    return success();
+}
+
+}  // namespace
+
+Run add_render(CLI::App& app) {
+    auto options = std::make_shared<Options>();
+    app.add_option("SCENE", options->scene, "glTF scene: .glb or .gltf")->required();
+    app.add_option("-o,--output", options->output, "Picture: .png (tone-mapped), .exr, .hdr or .pfm (radiance)")->required();
+    app.add_option("--camera", options->camera, "Name of a camera, 'view K', or eye;target;vfov_degrees");
+    app.add_option("--baked", options->baked, "Output folder of a bake of this scene: light the view by it");
+    app.add_option("--resolution", options->resolution, "Width x height in pixels");
+    app.add_option("--exposure", options->exposure, "Factor for .png; 0: automatic")->check(CLI::NonNegativeNumber);
+    options->light.declare(app);
+    declare_progress(app, options->progress);
+    return [options] {
+        const Status status = run(*options);
+        return status.ok() ? static_cast<int>(kDone) : fail(status.error());
+    };
+}
+
+}  // namespace lumel::cli

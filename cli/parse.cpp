@@ -1,0 +1,124 @@
+#include <charconv>
+#include <cmath>
+#include <sstream>
+
+#include "base/try.h"
+#include "command.h"
+
+namespace lumel::cli {
+namespace {
+
+Error usage(const std::string& option, const std::string& text, const std::string& expected) {
+    return {ErrorCode::usage, option + ": '" + text + "' is not " + expected, {}, {}};
+}
+
+}  // namespace
+
+Result<Vec3> parse_vec3(const std::string& text, const std::string& option) {
+    Vec3 out;
+    std::istringstream stream(text);
+    stream.imbue(std::locale::classic());
+    char comma1 = 0, comma2 = 0;
+    stream >> out.x >> comma1 >> out.y >> comma2 >> out.z;
+    if (!stream || comma1 != ',' || comma2 != ',' || !(stream >> std::ws).eof() || !is_finite(out))
+        return usage(option, text, "three numbers such as 0.3,-1,0.2");
+    return out;
+}
+
+Result<Size> parse_size(const std::string& text, const std::string& option) {
+    constexpr std::uint32_t kLargest = 16384;
+    Size out;
+    const char* const end = text.data() + text.size();
+    const auto [after_width, width_error] = std::from_chars(text.data(), end, out.width);
+    if (width_error == std::errc{} && after_width != end && *after_width == 'x') {
+        const auto [after_height, height_error] = std::from_chars(after_width + 1, end, out.height);
+        if (height_error == std::errc{} && after_height == end && out.width >= 1 && out.height >= 1 &&
+            out.width <= kLargest && out.height <= kLargest)
+            return out;
+    }
+    return usage(option, text, "a size such as 640x360 (edges from 1 to 16384)");
+}
+
+Result<std::uint64_t> parse_bytes(const std::string& text, const std::string& option) {
+    std::uint64_t value = 0;
+    const char* const end = text.data() + text.size();
+    const auto [after, error] = std::from_chars(text.data(), end, value);
+    int shift = -1;
+    if (error == std::errc{}) {
+        const std::string suffix(after, end);
+        if (suffix.empty()) shift = 0;
+        if (suffix == "K" || suffix == "k") shift = 10;
+        if (suffix == "M" || suffix == "m") shift = 20;
+        if (suffix == "G" || suffix == "g") shift = 30;
+    }
+    if (shift < 0 || value == 0 || value > (~std::uint64_t{0} >> shift)) return usage(option, text, "a size such as 4G or 512M");
+    return value << shift;
+}
+
+void LightOptions::declare(CLI::App& app) {
+    const std::string group = "Light";
+    app.add_option("--sky", sky_, "Sky: radiance R,G,B, or an equirectangular .hdr or .exr file")->group(group);
+    app.add_option("--sky-intensity", values_.sky.intensity, "Nits per unit of --sky")->check(CLI::NonNegativeNumber)->group(group);
+    app.add_option("--sky-rotation", values_.sky.rotation_degrees, "Degrees about +Y")->check(CLI::Range(-360.0, 360.0))->group(group);
+    app.add_option("--sky-blur", values_.sky.blur_degrees, "Blur the sky map, keeping its energy: half width in degrees")
+        ->check(CLI::Range(0.0, 90.0))->group(group);
+    app.add_flag("--sky-extract-sun", values_.sky.extract_sun, "Find the sun's disc in the map and make it a light")->group(group);
+    app.add_option("--sun-direction", sun_direction_, "X,Y,Z: the way the sun's light travels")->group(group);
+    app.add_option("--sun-illuminance", values_.sun.illuminance, "Lux on a plane facing the sun (0: 100000)")
+        ->check(CLI::NonNegativeNumber)->group(group);
+    app.add_option("--sun-colour,--sun-color", sun_color_, "R,G,B, times the illuminance")->group(group);
+    app.add_option("--sun-angle", values_.sun.angle_degrees, "The sun's diameter in degrees")->check(CLI::Range(0.0, 90.0))->group(group);
+    app.add_option("--include", include_, "Layers that the files sum: some of direct,sky,indirect")->group(group);
+    app.add_option("--direct-scale", values_.direct_scale, "Times direct and sky light")->check(CLI::NonNegativeNumber)->group(group);
+    app.add_option("--indirect-scale", values_.indirect_scale, "Times bounced light")->check(CLI::NonNegativeNumber)->group(group);
+
+    const std::string transport = "Transport";
+    app.add_option("--samples", values_.samples, "Paths per texel or pixel (0: the preset's)")->check(CLI::Range(0u, 1u << 24))->group(transport);
+    app.add_option("--bounces", values_.bounces, "Longest path; 0 = direct light only")->check(CLI::Range(0u, 1024u))->group(transport);
+    app.add_option("--seed", values_.seed, "Of the random numbers")->group(transport);
+    app.add_flag("--two-sided", values_.two_sided, "Light both sides of double-sided surfaces")->group(transport);
+    app.add_option("--threads", values_.threads, "0: one per core")->check(CLI::Range(0u, 1024u));
+}
+
+Status LightOptions::read(BakeOptions& out) const {
+    out.sky = values_.sky;
+    out.sun = values_.sun;
+    out.direct_scale = values_.direct_scale;
+    out.indirect_scale = values_.indirect_scale;
+    out.samples = values_.samples;
+    out.bounces = values_.bounces;
+    out.seed = values_.seed;
+    out.two_sided = values_.two_sided;
+    out.threads = values_.threads;
+
+    if (!sky_.empty()) {
+        if (const Result<Vec3> color = parse_vec3(sky_, "--sky"); color.ok()) {
+            if (color->x < 0 || color->y < 0 || color->z < 0) return usage("--sky", sky_, "a radiance of zero or more");
+            out.sky.color = *color;
+        } else {
+            out.sky.file = sky_;
+        }
+    }
+    if (!sun_direction_.empty()) {
+        LUMEL_TRY(const Vec3 direction, parse_vec3(sun_direction_, "--sun-direction"));
+        if (!(length(direction) > 1e-12f)) return usage("--sun-direction", sun_direction_, "a direction");
+        out.sun.direction = normalize(direction);
+    } else if (out.sun.illuminance > 0.0) {
+        return Error{ErrorCode::usage, "--sun-illuminance needs --sun-direction", {}, {}};
+    }
+    LUMEL_TRY(out.sun.color, parse_vec3(sun_color_, "--sun-colour"));
+    if (out.sun.color.x < 0 || out.sun.color.y < 0 || out.sun.color.z < 0)
+        return usage("--sun-colour", sun_color_, "a colour of zero or more");
+
+    out.include = {false, false, false};
+    std::istringstream layers(include_);
+    for (std::string layer; std::getline(layers, layer, ',');) {
+        if (layer == "direct") out.include.direct = true;
+        else if (layer == "sky") out.include.sky = true;
+        else if (layer == "indirect") out.include.indirect = true;
+        else return usage("--include", layer, "one of direct, sky, indirect");
+    }
+    return success();
+}
+
+}  // namespace lumel::cli

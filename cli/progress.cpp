@@ -1,0 +1,138 @@
+// A progress line with rate and time left on a terminal, plain lines elsewhere, JSON lines on request.
+#include <signal.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "command.h"
+
+namespace lumel::cli {
+namespace {
+
+// The one piece of state that a signal handler can reach.
+std::atomic<Context*> g_interrupted_context{nullptr};
+
+extern "C" void on_interrupt(int) {
+    if (Context* context = g_interrupted_context.load()) context->request_cancel();
+}
+
+std::string duration(double seconds) {
+    char text[32];
+    if (seconds < 100.0) std::snprintf(text, sizeof text, "%.0f s", seconds);
+    else if (seconds < 6000.0) std::snprintf(text, sizeof text, "%d min %02d s", static_cast<int>(seconds) / 60, static_cast<int>(seconds) % 60);
+    else std::snprintf(text, sizeof text, "%d h %02d min", static_cast<int>(seconds) / 3600, static_cast<int>(seconds) / 60 % 60);
+    return text;
+}
+
+}  // namespace
+
+class RunContext::Meter {
+public:
+    explicit Meter(const std::string& style)
+        : style_(style == "json"    ? ProgressStyle::json
+                 : style == "none"  ? ProgressStyle::none
+                 : style == "plain" ? ProgressStyle::plain
+                 : isatty(2)        ? ProgressStyle::automatic
+                                    : ProgressStyle::plain) {}
+
+    void show(const Progress& progress) {
+        const auto now = Clock::now();
+        if (progress.stage != stage_) {
+            end_line();
+            stage_ = progress.stage;
+            start_ = now;
+            shown_ = {};
+        }
+        const double elapsed = std::chrono::duration<double>(now - start_).count();
+        const double every = style_ == ProgressStyle::plain ? 5.0 : 0.1;
+        const bool done = progress.fraction >= 1.0;
+        if (!done && std::chrono::duration<double>(now - shown_).count() < every) return;
+        if (done && finished_ == stage_) return;
+        shown_ = now;
+        if (done) finished_ = stage_;
+        const double left = progress.fraction > 0.0 ? elapsed / progress.fraction - elapsed : 0.0;
+        const double rate = elapsed > 0.0 ? static_cast<double>(progress.rays) / elapsed * 1e-6 : 0.0;
+        switch (style_) {
+            case ProgressStyle::none: break;
+            case ProgressStyle::json:
+                std::fprintf(stderr, "{\"stage\":\"%s\",\"fraction\":%.4f,\"seconds\":%.2f,\"seconds_left\":%.2f,\"rays\":%llu}\n",
+                             stage_.c_str(), progress.fraction, elapsed, left, static_cast<unsigned long long>(progress.rays));
+                break;
+            case ProgressStyle::plain:
+                if (done && elapsed < 0.5) break;
+                std::fprintf(stderr, "%s: %.0f %%, %s%s\n", stage_.c_str(), 100.0 * progress.fraction, duration(elapsed).c_str(),
+                             done ? "" : (", " + duration(left) + " left").c_str());
+                break;
+            case ProgressStyle::automatic: bar(progress, elapsed, left, rate); break;
+        }
+    }
+
+    void end_line() {
+        if (open_line_) std::fputc('\n', stderr);
+        open_line_ = false;
+    }
+
+private:
+    using Clock = std::chrono::steady_clock;
+
+    void bar(const Progress& progress, double elapsed, double left, double rate) {
+        constexpr int kCells = 30;
+        const int filled = static_cast<int>(std::lround(progress.fraction * kCells));
+        std::string cells(static_cast<std::size_t>(filled), '#');
+        cells.resize(kCells, '.');
+        char tail[96] = "";
+        if (progress.rays > 0) std::snprintf(tail, sizeof tail, ", %.1f Mrays/s", rate);
+        std::fprintf(stderr, "\r\033[K%-12s [%s] %3.0f %%%s, %s", stage_.c_str(), cells.c_str(), 100.0 * progress.fraction, tail,
+                     progress.fraction >= 1.0 ? duration(elapsed).c_str() : (duration(left) + " left").c_str());
+        std::fflush(stderr);
+        open_line_ = true;
+    }
+
+    ProgressStyle style_;
+    std::string stage_, finished_;
+    Clock::time_point start_{}, shown_{};
+    bool open_line_ = false;
+};
+
+void declare_progress(CLI::App& app, std::string& style) {
+    style = "auto";
+    app.add_option("--progress", style, "auto, plain, json or none")->check(CLI::IsMember({"auto", "plain", "json", "none"}));
+}
+
+RunContext::RunContext(unsigned threads, const std::string& progress_style)
+    : context_(threads), meter_(std::make_unique<Meter>(progress_style)) {
+    context_.on_progress = [this](const Progress& progress) { meter_->show(progress); };
+    g_interrupted_context = &context_;
+    struct sigaction action {};
+    action.sa_handler = on_interrupt;
+    sigaction(SIGINT, &action, nullptr);
+    sigaction(SIGTERM, &action, nullptr);
+}
+
+RunContext::~RunContext() {
+    meter_->end_line();
+    signal(SIGINT, SIG_DFL);
+    signal(SIGTERM, SIG_DFL);
+    g_interrupted_context = nullptr;
+}
+
+void RunContext::finish() {
+    meter_->end_line();
+    for (const Diagnostic& item : context_.diagnostics.all()) {
+        std::fprintf(stderr, "lumel: warning: %s [%s, %llu]", item.message.c_str(), item.code.c_str(),
+                     static_cast<unsigned long long>(item.count));
+        for (std::size_t i = 0; i < item.examples.size() && i < 3; ++i)
+            std::fprintf(stderr, "%s %s", i ? "," : ":", item.examples[i].c_str());
+        std::fputc('\n', stderr);
+    }
+}
+
+int fail(const Error& error) {
+    std::fprintf(stderr, "lumel: error: %s\n", error.text().c_str());
+    return error.code == ErrorCode::usage ? kUsage : kFailed;
+}
+
+}  // namespace lumel::cli
