@@ -50,7 +50,6 @@ inline double spot_factor(Vec spot_direction, Vec light_to_point, double inner, 
 inline double cap(double s, double c) {
     if (c >= s) return kPi * s * s * c;
     if (c <= -s) return 0.0;
-    if (s >= 1.0) return kPi * 0.5 * (1.0 + c);  // a lune: a hemisphere cut by another
     const double sine = std::sqrt(std::max(0.0, 1.0 - c * c));
     const double x = std::sqrt(1.0 / (s * s) - 1.0);
     const double y = std::clamp(-x * c / sine, -1.0, 1.0);
@@ -87,7 +86,7 @@ inline double polygon_light(Vec point, Vec normal, const std::vector<Vec>& corne
         const double sine = length(c);
         if (sine > 0) sum += std::atan2(sine, dot(a, b)) * dot(c, normal) / sine;
     }
-    return std::max(0.0, -0.5 * radiance * sum);  // seen from its lit side the polygon runs the other way round
+    return std::max(0.0, -0.5 * radiance * sum);  // each cross product points down where the lit side is seen
 }
 
 // A rectangle or parallelogram by centre and half edges; lit on the side of half_u x half_v.

@@ -1,0 +1,174 @@
+#include "light/light_set.h"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "base/check.h"
+#include "light/emissive.h"
+#include "math/constants.h"
+#include "math/discrete.h"
+#include "math/trig.h"
+
+namespace lumel {
+namespace {
+
+bool emits(const Light& light) { return light.bake != LightBake::none && max_component(light.intensity) > 0.0f; }
+
+bool is_bright(const SkyMap& map) {
+    return std::any_of(map.radiance.begin(), map.radiance.end(), [](Vec3 c) { return max_component(c) > 0.0f; });
+}
+
+// As seen through the artist's controls; a light that they switch off gives no sample.
+LightSample scaled(LightSample sample, Vec3 scale) {
+    if (scale == Vec3{}) return {};
+    sample.weight *= scale;
+    return sample;
+}
+LightHit scaled(LightHit hit, Vec3 scale) {
+    hit.radiance *= scale;
+    return hit;
+}
+
+// As one of several lights, chosen with the given probability.
+LightSample selected(LightSample sample, float probability) {
+    sample.weight = sample.weight / probability;
+    sample.pdf *= probability;
+    return sample;
+}
+
+}  // namespace
+
+LightSet::LightSet(const Scene& scene, const WorldGeometry& geometry, SurfaceReader surfaces)
+    : scene_(&scene), geometry_(&geometry), surfaces_(surfaces) {
+    add_sky();
+    add_lights();
+    add_emissive_triangles();
+    share_local_selection();
+}
+
+void LightSet::add_sky() {
+    const Sky& sky = scene_->sky;
+    sky_rotation_ = sincos_turn(sky.rotation * kInvTwoPi);
+    has_sky_ = sky.map ? is_bright(*sky.map) : max_component(sky.color) > 0.0f;
+    if (sky.map && has_sky_) sky_sampler_.emplace(*sky.map);
+}
+
+void LightSet::add_lights() {
+    for (std::uint32_t index = 0; index < scene_->lights.size(); ++index) {
+        const Light& light = scene_->lights[index];
+        if (!emits(light)) continue;
+        switch (light.shape) {
+            case LightShape::sun: suns_.push_back({SunLight(light), index}); break;
+            case LightShape::point:
+            case LightShape::spot: add_shape(PunctualLight(light), index); break;
+            case LightShape::rectangle: add_shape(RectangleLight(light), index); break;
+            case LightShape::disc: add_shape(DiscLight(light), index); break;
+            case LightShape::sphere: add_shape(SphereLight(light), index); break;
+        }
+    }
+}
+
+void LightSet::add_shape(Shape shape, std::uint32_t light) {
+    const auto power_of = [](const auto& s) { return s.power(); };
+    const auto can_be_hit = [](const auto& s) { return s.can_be_hit(); };
+    if (!(std::visit(power_of, shape) > 0.0)) return;  // no area
+    if (std::visit(can_be_hit, shape)) hittable_.push_back(static_cast<std::uint32_t>(shapes_.size()));
+    shapes_.push_back({shape, light});
+}
+
+void LightSet::add_emissive_triangles() {
+    for (std::uint32_t triangle = 0; triangle < geometry_->triangle_count(); ++triangle)
+        if (is_emitter(geometry_->triangles[triangle]) && geometry_->area(triangle) > 0.0f)
+            triangles_.push_back(triangle);
+    if (triangles_.empty()) return;
+    local_of_triangle_.assign(geometry_->triangle_count(), kNone);
+    for (std::size_t i = 0; i < triangles_.size(); ++i)
+        local_of_triangle_[triangles_[i]] = static_cast<std::uint32_t>(shapes_.size() + i);
+}
+
+void LightSet::share_local_selection() {
+    std::vector<double> powers;
+    powers.reserve(shapes_.size() + triangles_.size());
+    for (const Local& local : shapes_)
+        powers.push_back(std::visit([](const auto& shape) { return shape.power(); }, local.shape));
+    for (const std::uint32_t triangle : triangles_)
+        powers.push_back(EmissiveTriangle(*geometry_, surfaces_, triangle).power(*scene_));
+    if (powers.empty()) return;
+    LUMEL_CHECK(shapes_.size() < kUnits / 2, shapes_.size());
+    local_ends_.resize(powers.size());
+    // Lights that no ray can hit must be sampled. A triangle too dim for a share is found by the rays that hit it.
+    share_units(powers, shapes_.size(), local_ends_);
+}
+
+bool LightSet::empty() const { return suns_.empty() && !has_sky_ && local_ends_.empty(); }
+
+Vec3 LightSet::artist_scale(std::uint32_t light, bool bounced) const {
+    const Light& l = scene_->lights[light];
+    if (bounced) return l.indirect_color * l.indirect_scale;
+    return l.bake == LightBake::all ? Vec3{1, 1, 1} : Vec3{};
+}
+
+LightSample LightSet::sample_sun(std::size_t sun, Vec2 u, bool bounced) const {
+    return scaled(suns_[sun].shape.sample(u), artist_scale(suns_[sun].light, bounced));
+}
+
+LightHit LightSet::sun(std::size_t sun, Vec3 direction, bool bounced) const {
+    return scaled(suns_[sun].shape.intersect(direction), artist_scale(suns_[sun].light, bounced));
+}
+
+// A turn by the sky's rotation about +Y, and back.
+Vec3 LightSet::to_world(Vec3 d) const {
+    const auto [s, c] = sky_rotation_;
+    return {c * d.x + s * d.z, d.y, c * d.z - s * d.x};
+}
+Vec3 LightSet::to_map(Vec3 d) const {
+    const auto [s, c] = sky_rotation_;
+    return {c * d.x - s * d.z, d.y, c * d.z + s * d.x};
+}
+
+LightSample LightSet::sample_sky(Vec2 u) const {
+    if (!sky_sampler_) return {};
+    const SkySampler::Sample sample = sky_sampler_->sample(u);
+    const Vec3 radiance = lookup(*scene_->sky.map, sample.direction);
+    return {to_world(sample.direction), kInfiniteDistance, radiance / sample.pdf, sample.pdf, kNone};
+}
+
+LightHit LightSet::sky(Vec3 direction) const {
+    if (!scene_->sky.map) return {scene_->sky.color, 0.0f, kInfiniteDistance};
+    if (!sky_sampler_) return {};
+    const Vec2 uv = sky_coordinates(to_map(direction));
+    return {lookup(*scene_->sky.map, uv), sky_sampler_->pdf(uv), kInfiniteDistance};
+}
+
+LightSample LightSet::sample_local(Vec3 point, float u_select, Vec2 u, bool bounced) const {
+    if (local_ends_.empty()) return {};
+    const Choice choice = choose(local_ends_, u_select);
+    const float chance = probability(choice.units);
+    if (choice.index >= shapes_.size()) {
+        const std::uint32_t triangle = triangles_[choice.index - shapes_.size()];
+        return selected(EmissiveTriangle(*geometry_, surfaces_, triangle).sample(point, u), chance);
+    }
+    const Local& local = shapes_[choice.index];
+    const Vec3 scale = artist_scale(local.light, bounced);
+    if (scale == Vec3{}) return {};
+    const LightSample sample = std::visit([&](const auto& shape) { return shape.sample(point, u); }, local.shape);
+    return scaled(selected(sample, chance), scale);
+}
+
+LightHit LightSet::intersect_shape(std::uint32_t index, Vec3 origin, Vec3 direction, bool bounced) const {
+    const Local& local = shapes_[index];
+    LightHit hit = std::visit([&](const auto& shape) { return shape.intersect(origin, direction); }, local.shape);
+    hit.pdf *= probability(units_of(local_ends_, index));
+    return scaled(hit, artist_scale(local.light, bounced));
+}
+
+LightHit LightSet::emissive(std::uint32_t triangle, float b1, float b2, Vec3 /*from*/, Vec3 direction, float distance,
+                            bool back_face) const {
+    if (!is_emitter(geometry_->triangles[triangle])) return {};
+    LightHit hit = EmissiveTriangle(*geometry_, surfaces_, triangle).hit(b1, b2, direction, distance, back_face);
+    const std::uint32_t local = local_of_triangle_.empty() ? kNone : local_of_triangle_[triangle];
+    hit.pdf *= local == kNone ? 0.0f : probability(units_of(local_ends_, local));
+    return hit;
+}
+
+}  // namespace lumel

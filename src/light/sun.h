@@ -1,0 +1,23 @@
+// A directional light. Its intensity is the irradiance on a plane facing it (lux), whatever its angular size.
+#pragma once
+
+#include "light/light_sample.h"
+
+namespace lumel {
+
+class SunLight {
+public:
+    explicit SunLight(const Light& light);
+
+    [[nodiscard]] LightSample sample(Vec2 u) const;
+    [[nodiscard]] LightHit intersect(Vec3 direction) const;
+
+private:
+    Vec3 towards_;  // unit, to the centre of the disc
+    Vec3 irradiance_;
+    Vec3 radiance_{};             // of the disc
+    float one_minus_cos_ = 0.0f;  // of its half angle; 0 = a point
+    float sine_squared_ = 0.0f;
+};
+
+}  // namespace lumel
