@@ -1,0 +1,16 @@
+// The sample scenes; each is written as <name>.glb with its sidecar.
+#pragma once
+
+#include <filesystem>
+
+#include "glb_builder.h"
+#include "lumel/result.h"
+
+namespace lumel::samples {
+
+Status write_gallery(const std::filesystem::path& folder);
+
+// A level of `buildings` instanced houses on streets: for tests of size. About 41 charts a house.
+Status write_town(const std::filesystem::path& folder, std::uint32_t buildings);
+
+}  // namespace lumel::samples
