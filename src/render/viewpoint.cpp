@@ -35,13 +35,12 @@ Candidate look_around(Vec3 eye, std::uint32_t key, const Tracer& tracer, const W
     tracer.closest(rays, hits);
     Candidate out{eye, eye, 0.0f};
     std::uint32_t front = 0;
-    float nearest = kInfiniteDistance, total = 0.0f;
+    float nearest = kInfiniteDistance;
     for (const Hit& hit : hits) {
         if (hit.missed()) continue;
         nearest = std::min(nearest, hit.t);
         if (hit.back_face && !(geometry.triangles[hit.triangle].flags & kDoubleSided)) continue;
         ++front;
-        total += std::min(hit.t, diagonal);
     }
     if (front < kProbeRays / 2 || nearest < 0.004f * diagonal) return out;
     // Look where the view is deepest: mean distance within 40 degrees of each ray.
