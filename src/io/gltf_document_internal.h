@@ -5,17 +5,15 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "io/gltf_document.h"
+#include "io/json_read.h"
 #include "lumel/result.h"
 
 namespace lumel {
-
-using Json = nlohmann::ordered_json;
 
 // glTF's componentType.
 enum class Component : std::uint16_t {
@@ -83,7 +81,9 @@ public:
     [[nodiscard]] Result<std::vector<std::byte>> image_bytes(std::uint64_t image) const;
 
     // Where external files are looked for; empty where they are refused.
-    [[nodiscard]] std::filesystem::path base_directory() const { return path.empty() ? path : path.parent_path(); }
+    [[nodiscard]] std::filesystem::path base_directory() const {
+        return path.empty() ? path : path.has_parent_path() ? path.parent_path() : ".";
+    }
 };
 
 }  // namespace lumel
