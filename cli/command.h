@@ -46,8 +46,8 @@ private:
     BakeOptions values_;
 };
 
-// Loads the scene, then the sky map that the options name, and applies sky and sun. The scene's own sun angle defaults etc.
-// stay as the file says.
+// Loads the scene, then the sky map that the options name, and applies sky and sun. The scene's own sun angle defaults
+// etc. stay as the file says.
 class RunContext;
 
 // How progress is shown.

@@ -32,15 +32,18 @@ Result<ImageMetrics> measure(const Options& options) {
     LUMEL_TRY(Image reference, read_image(options.reference));
     const auto size = [](const Image& i) { return std::to_string(i.width) + "x" + std::to_string(i.height); };
     if (image.width != reference.width || image.height != reference.height)
-        return Error{ErrorCode::invalid_input, "is " + size(image) + " but " + options.reference + " is " + size(reference),
-                     options.image, "images to compare must be of equal size"};
+        return Error{ErrorCode::invalid_input,
+                     "is " + size(image) + " but " + options.reference + " is " + size(reference), options.image,
+                     "images to compare must be of equal size"};
     const std::uint32_t channels = std::min({image.channels, reference.channels, 3u});
     Mask mask;
     if (!options.mask.empty()) {
         LUMEL_TRY(const Image mask_image, read_image(options.mask));
         if (mask_image.width != image.width || mask_image.height != image.height)
-            return Error{ErrorCode::invalid_input, "the mask is " + size(mask_image) + " but the images are " + size(image),
-                         options.mask, {}};
+            return Error{ErrorCode::invalid_input,
+                         "the mask is " + size(mask_image) + " but the images are " + size(image),
+                         options.mask,
+                         {}};
         mask = mask_from_image(mask_image);
     }
     ImageMetrics metrics = compare_images(first_channels(image, channels), first_channels(reference, channels), mask);
@@ -80,12 +83,14 @@ void print(const ImageMetrics& m) {
                 static_cast<unsigned long long>(m.non_finite));
     std::printf("mean              %.6g, reference %.6g\n", m.mean, m.reference_mean);
     std::printf("nRMSE             %.6g\nrelMSE            %.6g\n", m.nrmse, m.relmse);
-    std::printf("bias              %+.6g (%+.4f %%)\nblock bias P95    %.4f %%\n", m.bias, 100.0 * m.relative_bias, 100.0 * m.block_bias_p95);
+    std::printf("bias              %+.6g (%+.4f %%)\nblock bias P95    %.4f %%\n", m.bias, 100.0 * m.relative_bias,
+                100.0 * m.block_bias_p95);
     std::printf("median rel. error %.4f %%\nlog-PSNR          %.2f dB\n", 100.0 * m.median_relative_error, m.log_psnr);
     for (const WorstTexel& t : m.worst)
-        std::printf("worst (%u, %u): %.4g %.4g %.4g, reference %.4g %.4g %.4g\n", t.x, t.y, static_cast<double>(t.value[0]),
-                    static_cast<double>(t.value[1]), static_cast<double>(t.value[2]), static_cast<double>(t.reference[0]),
-                    static_cast<double>(t.reference[1]), static_cast<double>(t.reference[2]));
+        std::printf("worst (%u, %u): %.4g %.4g %.4g, reference %.4g %.4g %.4g\n", t.x, t.y,
+                    static_cast<double>(t.value[0]), static_cast<double>(t.value[1]), static_cast<double>(t.value[2]),
+                    static_cast<double>(t.reference[0]), static_cast<double>(t.reference[1]),
+                    static_cast<double>(t.reference[2]));
 }
 
 }  // namespace
@@ -101,8 +106,10 @@ Run add_compare(CLI::App& app) {
     return [options] {
         const Result<ImageMetrics> metrics = measure(*options);
         if (!metrics.ok()) return fail(metrics.error());
-        if (options->json) std::printf("%s\n", to_json(*metrics).dump(1).c_str());
-        else print(*metrics);
+        if (options->json)
+            std::printf("%s\n", to_json(*metrics).dump(1).c_str());
+        else
+            print(*metrics);
         const double error = options->metric == "nrmse" ? metrics->nrmse : metrics->relmse;
         if (options->max_error < 0.0 || error <= options->max_error) return static_cast<int>(kDone);
         std::fprintf(stderr, "lumel: %s %.6g is above %.6g\n", options->metric.c_str(), error, options->max_error);

@@ -36,7 +36,8 @@ Result<Camera> parse_camera(const std::string& text) {
     char* end = nullptr;
     const float fov = fov_text.empty() ? 60.0f : std::strtof(fov_text.c_str(), &end);
     if ((end && *end) || !(fov > 0.1f && fov < 179.0f))
-        return Error{ErrorCode::usage, "--camera: the vertical field of view must lie between 0.1 and 179 degrees", {}, {}};
+        return Error{
+            ErrorCode::usage, "--camera: the vertical field of view must lie between 0.1 and 179 degrees", {}, {}};
     return look_at(eye, target, fov * kRadians);
 }
 
@@ -66,7 +67,8 @@ Status write_picture(const std::string& path, const Image& image, double exposur
         const float factor = exposure > 0.0 ? static_cast<float>(exposure) : auto_exposure(image);
         return write_png(path, image.width, image.height, 3, tonemap(image, factor));
     }
-    return Error{ErrorCode::usage, "-o: unknown picture format '" + extension + "'", path, "use .png, .exr, .hdr or .pfm"};
+    return Error{ErrorCode::usage, "-o: unknown picture format '" + extension + "'", path,
+                 "use .png, .exr, .hdr or .pfm"};
 }
 
 Status run(const Options& options) {
@@ -115,7 +117,8 @@ Status run(const Options& options) {
 Run add_render(CLI::App& app) {
     auto options = std::make_shared<Options>();
     app.add_option("SCENE", options->scene, "glTF scene: .glb or .gltf")->required();
-    app.add_option("-o,--output", options->output, "Picture: .png (tone-mapped), .exr, .hdr or .pfm (radiance)")->required();
+    app.add_option("-o,--output", options->output, "Picture: .png (tone-mapped), .exr, .hdr or .pfm (radiance)")
+        ->required();
     app.add_option("--camera", options->camera, "Name of a camera, 'view K', or eye;target;vfov_degrees");
     app.add_option("--baked", options->baked, "Output folder of a bake of this scene: light the view by it");
     app.add_option("--resolution", options->resolution, "Width x height in pixels");

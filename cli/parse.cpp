@@ -51,30 +51,49 @@ Result<std::uint64_t> parse_bytes(const std::string& text, const std::string& op
         if (suffix == "M" || suffix == "m") shift = 20;
         if (suffix == "G" || suffix == "g") shift = 30;
     }
-    if (shift < 0 || value == 0 || value > (~std::uint64_t{0} >> shift)) return usage(option, text, "a size such as 4G or 512M");
+    if (shift < 0 || value == 0 || value > (~std::uint64_t{0} >> shift))
+        return usage(option, text, "a size such as 4G or 512M");
     return value << shift;
 }
 
 void LightOptions::declare(CLI::App& app) {
     const std::string group = "Light";
     app.add_option("--sky", sky_, "Sky: radiance R,G,B, or an equirectangular .hdr or .exr file")->group(group);
-    app.add_option("--sky-intensity", values_.sky.intensity, "Nits per unit of --sky")->check(CLI::NonNegativeNumber)->group(group);
-    app.add_option("--sky-rotation", values_.sky.rotation_degrees, "Degrees about +Y")->check(CLI::Range(-360.0, 360.0))->group(group);
-    app.add_option("--sky-blur", values_.sky.blur_degrees, "Blur the sky map, keeping its energy: half width in degrees")
-        ->check(CLI::Range(0.0, 90.0))->group(group);
-    app.add_flag("--sky-extract-sun", values_.sky.extract_sun, "Find the sun's disc in the map and make it a light")->group(group);
+    app.add_option("--sky-intensity", values_.sky.intensity, "Nits per unit of --sky")
+        ->check(CLI::NonNegativeNumber)
+        ->group(group);
+    app.add_option("--sky-rotation", values_.sky.rotation_degrees, "Degrees about +Y")
+        ->check(CLI::Range(-360.0, 360.0))
+        ->group(group);
+    app.add_option("--sky-blur", values_.sky.blur_degrees,
+                   "Blur the sky map, keeping its energy: half width in degrees")
+        ->check(CLI::Range(0.0, 90.0))
+        ->group(group);
+    app.add_flag("--sky-extract-sun", values_.sky.extract_sun, "Find the sun's disc in the map and make it a light")
+        ->group(group);
     app.add_option("--sun-direction", sun_direction_, "X,Y,Z: the way the sun's light travels")->group(group);
     app.add_option("--sun-illuminance", values_.sun.illuminance, "Lux on a plane facing the sun (0: 100000)")
-        ->check(CLI::NonNegativeNumber)->group(group);
+        ->check(CLI::NonNegativeNumber)
+        ->group(group);
     app.add_option("--sun-colour,--sun-color", sun_color_, "R,G,B, times the illuminance")->group(group);
-    app.add_option("--sun-angle", values_.sun.angle_degrees, "The sun's diameter in degrees")->check(CLI::Range(0.0, 90.0))->group(group);
+    app.add_option("--sun-angle", values_.sun.angle_degrees, "The sun's diameter in degrees")
+        ->check(CLI::Range(0.0, 90.0))
+        ->group(group);
     app.add_option("--include", include_, "Layers that the files sum: some of direct,sky,indirect")->group(group);
-    app.add_option("--direct-scale", values_.direct_scale, "Times direct and sky light")->check(CLI::NonNegativeNumber)->group(group);
-    app.add_option("--indirect-scale", values_.indirect_scale, "Times bounced light")->check(CLI::NonNegativeNumber)->group(group);
+    app.add_option("--direct-scale", values_.direct_scale, "Times direct and sky light")
+        ->check(CLI::NonNegativeNumber)
+        ->group(group);
+    app.add_option("--indirect-scale", values_.indirect_scale, "Times bounced light")
+        ->check(CLI::NonNegativeNumber)
+        ->group(group);
 
     const std::string transport = "Transport";
-    app.add_option("--samples", values_.samples, "Paths per texel or pixel (0: the preset's)")->check(CLI::Range(0u, 1u << 24))->group(transport);
-    app.add_option("--bounces", values_.bounces, "Longest path; 0 = direct light only")->check(CLI::Range(0u, 1024u))->group(transport);
+    app.add_option("--samples", values_.samples, "Paths per texel or pixel (0: the preset's)")
+        ->check(CLI::Range(0u, 1u << 24))
+        ->group(transport);
+    app.add_option("--bounces", values_.bounces, "Longest path; 0 = direct light only")
+        ->check(CLI::Range(0u, 1024u))
+        ->group(transport);
     app.add_option("--seed", values_.seed, "Of the random numbers")->group(transport);
     app.add_flag("--two-sided", values_.two_sided, "Light both sides of double-sided surfaces")->group(transport);
     app.add_option("--threads", values_.threads, "0: one per core")->check(CLI::Range(0u, 1024u));
@@ -113,10 +132,14 @@ Status LightOptions::read(BakeOptions& out) const {
     out.include = {false, false, false};
     std::istringstream layers(include_);
     for (std::string layer; std::getline(layers, layer, ',');) {
-        if (layer == "direct") out.include.direct = true;
-        else if (layer == "sky") out.include.sky = true;
-        else if (layer == "indirect") out.include.indirect = true;
-        else return usage("--include", layer, "one of direct, sky, indirect");
+        if (layer == "direct")
+            out.include.direct = true;
+        else if (layer == "sky")
+            out.include.sky = true;
+        else if (layer == "indirect")
+            out.include.indirect = true;
+        else
+            return usage("--include", layer, "one of direct, sky, indirect");
     }
     return success();
 }

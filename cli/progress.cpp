@@ -21,9 +21,14 @@ extern "C" void on_interrupt(int) {
 
 std::string duration(double seconds) {
     char text[32];
-    if (seconds < 100.0) std::snprintf(text, sizeof text, "%.0f s", seconds);
-    else if (seconds < 6000.0) std::snprintf(text, sizeof text, "%d min %02d s", static_cast<int>(seconds) / 60, static_cast<int>(seconds) % 60);
-    else std::snprintf(text, sizeof text, "%d h %02d min", static_cast<int>(seconds) / 3600, static_cast<int>(seconds) / 60 % 60);
+    if (seconds < 100.0)
+        std::snprintf(text, sizeof text, "%.0f s", seconds);
+    else if (seconds < 6000.0)
+        std::snprintf(text, sizeof text, "%d min %02d s", static_cast<int>(seconds) / 60,
+                      static_cast<int>(seconds) % 60);
+    else
+        std::snprintf(text, sizeof text, "%d h %02d min", static_cast<int>(seconds) / 3600,
+                      static_cast<int>(seconds) / 60 % 60);
     return text;
 }
 
@@ -58,13 +63,15 @@ public:
         switch (style_) {
             case ProgressStyle::none: break;
             case ProgressStyle::json:
-                std::fprintf(stderr, "{\"stage\":\"%s\",\"fraction\":%.4f,\"seconds\":%.2f,\"seconds_left\":%.2f,\"rays\":%llu}\n",
-                             stage_.c_str(), progress.fraction, elapsed, left, static_cast<unsigned long long>(progress.rays));
+                std::fprintf(
+                    stderr,
+                    "{\"stage\":\"%s\",\"fraction\":%.4f,\"seconds\":%.2f,\"seconds_left\":%.2f,\"rays\":%llu}\n",
+                    stage_.c_str(), progress.fraction, elapsed, left, static_cast<unsigned long long>(progress.rays));
                 break;
             case ProgressStyle::plain:
                 if (done && elapsed < 0.5) break;
-                std::fprintf(stderr, "%s: %.0f %%, %s%s\n", stage_.c_str(), 100.0 * progress.fraction, duration(elapsed).c_str(),
-                             done ? "" : (", " + duration(left) + " left").c_str());
+                std::fprintf(stderr, "%s: %.0f %%, %s%s\n", stage_.c_str(), 100.0 * progress.fraction,
+                             duration(elapsed).c_str(), done ? "" : (", " + duration(left) + " left").c_str());
                 break;
             case ProgressStyle::automatic: bar(progress, elapsed, left, rate); break;
         }
@@ -85,7 +92,8 @@ private:
         cells.resize(kCells, '.');
         char tail[96] = "";
         if (progress.rays > 0) std::snprintf(tail, sizeof tail, ", %.1f Mrays/s", rate);
-        std::fprintf(stderr, "\r\033[K%-12s [%s] %3.0f %%%s, %s", stage_.c_str(), cells.c_str(), 100.0 * progress.fraction, tail,
+        std::fprintf(stderr, "\r\033[K%-12s [%s] %3.0f %%%s, %s", stage_.c_str(), cells.c_str(),
+                     100.0 * progress.fraction, tail,
                      progress.fraction >= 1.0 ? duration(elapsed).c_str() : (duration(left) + " left").c_str());
         std::fflush(stderr);
         open_line_ = true;
@@ -99,7 +107,8 @@ private:
 
 void declare_progress(CLI::App& app, std::string& style) {
     style = "auto";
-    app.add_option("--progress", style, "auto, plain, json or none")->check(CLI::IsMember({"auto", "plain", "json", "none"}));
+    app.add_option("--progress", style, "auto, plain, json or none")
+        ->check(CLI::IsMember({"auto", "plain", "json", "none"}));
 }
 
 RunContext::RunContext(unsigned threads, const std::string& progress_style)

@@ -1,5 +1,5 @@
-// The sample of the README: a small gallery with a window wall, columns, a sphere and a lamp. It shows what a lightmap is
-// for: sunlight that turns corners, colour that bleeds, a smooth shape, instances, an emitter.
+// The sample of the README: a small gallery with a window wall, columns, a sphere and a lamp. It shows what a lightmap
+// is for: sunlight that turns corners, colour that bleeds, a smooth shape, instances, an emitter.
 #include "samples.h"
 
 #include <cmath>
@@ -43,7 +43,8 @@ void window_wall(Geometry& g) {
 }
 
 void column(Geometry& g, float x, float z) {
-    const Vec2 profile[] = {{0.34f, 0.0f}, {0.34f, 0.12f}, {0.26f, 0.2f}, {0.22f, 1.6f}, {0.2f, 3.2f}, {0.3f, 3.4f}, {0.34f, kHeight}};
+    const Vec2 profile[] = {{0.34f, 0.0f}, {0.34f, 0.12f}, {0.26f, 0.2f},   {0.22f, 1.6f},
+                            {0.2f, 3.2f},  {0.3f, 3.4f},   {0.34f, kHeight}};
     g.revolve({x, 0.0f, z}, profile, 24);
 }
 
@@ -68,11 +69,11 @@ Status write_gallery(const std::filesystem::path& folder) {
     floor.material = planks;
     floor.quad({0, 0, kDepth}, {kWidth, 0, 0}, {0, 0, -kDepth}, 2.0f);
     walls.material = plaster;
-    walls.quad({0, 0, 0}, {kWidth, 0, 0}, {0, kHeight, 0});                   // back
-    walls.quad({kWidth, 0, 0}, {0, 0, kDepth}, {0, kHeight, 0});              // right
-    walls.quad({0, kHeight, 0}, {kWidth, 0, 0}, {0, 0, kDepth});              // ceiling
+    walls.quad({0, 0, 0}, {kWidth, 0, 0}, {0, kHeight, 0});                                  // back
+    walls.quad({kWidth, 0, 0}, {0, 0, kDepth}, {0, kHeight, 0});                             // right
+    walls.quad({0, kHeight, 0}, {kWidth, 0, 0}, {0, 0, kDepth});                             // ceiling
     walls.box({-kWall, kHeight, -kWall}, {kWidth + kWall, kHeight + 0.2f, kDepth + kWall});  // roof
-    walls.box({-kWall, 0, -kWall}, {kWidth + kWall, kHeight, -0.001f});       // outer shells keep light out
+    walls.box({-kWall, 0, -kWall}, {kWidth + kWall, kHeight, -0.001f});  // outer shells keep light out
     walls.box({kWidth + 0.001f, 0, 0}, {kWidth + kWall, kHeight, kDepth});
     walls.box({-kWall, 0, 0}, {-0.001f, kHeight, kDepth});
     red_wall.material = red;
@@ -110,7 +111,8 @@ Status write_gallery(const std::filesystem::path& folder) {
     place("bench right", bench_mesh, {7.3f, 0, 4.2f});
     place("lantern", mesh("lantern", lantern), {1.2f, 2.4f, 0.9f});
 
-    const int sun = glb.add_light({{"type", "directional"}, {"name", "sun"}, {"intensity", 60.0}, {"color", {1.0, 0.93, 0.82}}});
+    const int sun =
+        glb.add_light({{"type", "directional"}, {"name", "sun"}, {"intensity", 60.0}, {"color", {1.0, 0.93, 0.82}}});
     Json sun_node = make_node_looking("sun", {4, 8, 12}, {0.35f, -0.62f, -0.7f});
     sun_node["extensions"]["KHR_lights_punctual"]["light"] = sun;
     glb.add_node(sun_node);

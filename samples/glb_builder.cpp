@@ -124,7 +124,10 @@ int GlbBuilder::add_view(std::span<const std::byte> data, int target) {
 
 template <class T>
 int GlbBuilder::add_accessor(std::span<const T> data, int component, const char* type, int target, bool bounds) {
-    Json accessor{{"bufferView", add_view(std::as_bytes(data), target)}, {"componentType", component}, {"count", data.size()}, {"type", type}};
+    Json accessor{{"bufferView", add_view(std::as_bytes(data), target)},
+                  {"componentType", component},
+                  {"count", data.size()},
+                  {"type", type}};
     if constexpr (std::is_same_v<T, Vec3>)
         if (bounds && !data.empty()) {
             Vec3 low = data[0], high = data[0];
@@ -155,7 +158,8 @@ int GlbBuilder::add_mesh(const std::string& name, std::span<const Geometry> prim
     for (const Geometry& g : primitives) {
         Json attributes;
         attributes["POSITION"] = add_accessor<Vec3>(g.positions, kFloat, "VEC3", kArrayBuffer, true);
-        if (!g.normals.empty()) attributes["NORMAL"] = add_accessor<Vec3>(g.normals, kFloat, "VEC3", kArrayBuffer, false);
+        if (!g.normals.empty())
+            attributes["NORMAL"] = add_accessor<Vec3>(g.normals, kFloat, "VEC3", kArrayBuffer, false);
         if (!g.uv.empty()) attributes["TEXCOORD_0"] = add_accessor<Vec2>(g.uv, kFloat, "VEC2", kArrayBuffer, false);
         const int indices = add_accessor<std::uint32_t>(g.indices, kUint32, "SCALAR", kElementArrayBuffer, false);
         mesh["primitives"].push_back({{"attributes", attributes}, {"indices", indices}, {"material", g.material}});
@@ -215,7 +219,9 @@ Status GlbBuilder::write(const std::filesystem::path& path) const { return write
 Json make_material(const std::string& name, Vec3 base_color) {
     return {{"name", name},
             {"pbrMetallicRoughness",
-             {{"baseColorFactor", {base_color.x, base_color.y, base_color.z, 1.0}}, {"metallicFactor", 0.0}, {"roughnessFactor", 1.0}}}};
+             {{"baseColorFactor", {base_color.x, base_color.y, base_color.z, 1.0}},
+              {"metallicFactor", 0.0},
+              {"roughnessFactor", 1.0}}}};
 }
 
 Json make_node_looking(const std::string& name, Vec3 position, Vec3 direction) {

@@ -52,7 +52,9 @@ private:
     template <class T>
     int add_accessor(std::span<const T> data, int component, const char* type, int target, bool bounds);
 
-    Json root_ = {{"asset", {{"version", "2.0"}, {"generator", "lumel samples"}}}, {"scene", 0}, {"scenes", Json::array({{{"nodes", Json::array()}}})}};
+    Json root_ = {{"asset", {{"version", "2.0"}, {"generator", "lumel samples"}}},
+                  {"scene", 0},
+                  {"scenes", Json::array({{{"nodes", Json::array()}}})}};
     std::vector<std::byte> buffer_;
 };
 

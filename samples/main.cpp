@@ -14,8 +14,9 @@ int main(int argc, char** argv) {
     }
     std::error_code ignored;
     std::filesystem::create_directories(argv[1], ignored);
-    const Status status = which == "town" ? samples::write_town(argv[1], static_cast<std::uint32_t>(std::strtoul(argv[3], nullptr, 10)))
-                                          : samples::write_gallery(argv[1]);
+    const Status status =
+        which == "town" ? samples::write_town(argv[1], static_cast<std::uint32_t>(std::strtoul(argv[3], nullptr, 10)))
+                        : samples::write_gallery(argv[1]);
     if (status.ok()) return 0;
     std::fprintf(stderr, "lumel_samples: %s\n", status.error().text().c_str());
     return 1;

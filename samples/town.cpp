@@ -32,7 +32,8 @@ Status write_town(const std::filesystem::path& folder, std::uint32_t buildings) 
     for (std::uint32_t kind = 0; kind < kKinds; ++kind) {
         const float k = static_cast<float>(kind);
         Geometry g = house(kind);
-        g.material = glb.add_material(make_material("house " + std::to_string(kind), {0.75f - 0.1f * k, 0.6f, 0.4f + 0.1f * k}));
+        g.material =
+            glb.add_material(make_material("house " + std::to_string(kind), {0.75f - 0.1f * k, 0.6f, 0.4f + 0.1f * k}));
         meshes[kind] = glb.add_mesh("house " + std::to_string(kind), std::span(&g, 1));
     }
     const auto side = static_cast<std::uint32_t>(std::ceil(std::sqrt(static_cast<double>(buildings))));
@@ -48,7 +49,9 @@ Status write_town(const std::filesystem::path& folder, std::uint32_t buildings) 
         const float z = kPitch * (static_cast<float>(i / side) + 0.5f) - 0.5f * extent;
         const std::string number = std::to_string(i);
         glb.add_node({{"name", "ground " + number}, {"mesh", tile}, {"translation", {x, 0.0f, z}}});
-        glb.add_node({{"name", "house " + number}, {"mesh", meshes[(i * 7 + i / side * 3) % kKinds]}, {"translation", {x, 0.0f, z}}});
+        glb.add_node({{"name", "house " + number},
+                      {"mesh", meshes[(i * 7 + i / side * 3) % kKinds]},
+                      {"translation", {x, 0.0f, z}}});
     }
     return glb.write(folder / "town.glb");
 }

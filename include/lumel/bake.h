@@ -14,8 +14,8 @@
 
 namespace lumel {
 
-struct Lightmap;   // post/lightmap.h
-struct ChartSet;   // chart/chart_set.h
+struct Lightmap;  // post/lightmap.h
+struct ChartSet;  // chart/chart_set.h
 struct Atlas;
 struct WorldGeometry;
 
@@ -36,16 +36,16 @@ struct BakeReport {
     std::vector<StageTime> stages;
     std::vector<PageReport> pages;
     std::uint64_t triangles = 0, instances = 0, charts = 0, texels = 0, invalid_texels = 0;
-    std::uint64_t samples = 0;            // traced, over all texels
-    std::uint64_t rays = 0;               // all kinds
-    double trace_wall_seconds = 0.0;      // wall time of the stage that traces
-    double tracer_seconds = 0.0;          // inside the tracer's calls, summed over threads
-    double rays_per_second = 0.0;         // rays over trace_wall_seconds
-    double estimated_nrmse = 0.0;         // from the stored variance: sqrt(mean variance) / mean irradiance
+    std::uint64_t samples = 0;              // traced, over all texels
+    std::uint64_t rays = 0;                 // all kinds
+    double trace_wall_seconds = 0.0;        // wall time of the stage that traces
+    double tracer_seconds = 0.0;            // inside the tracer's calls, summed over threads
+    double rays_per_second = 0.0;           // rays over trace_wall_seconds
+    double estimated_nrmse = 0.0;           // from the stored variance: sqrt(mean variance) / mean irradiance
     double mean_irradiance[3] = {0, 0, 0};  // I = E/pi over baked texels
     double texels_per_metre = 0.0;
     std::uint64_t peak_memory_bytes = 0, predicted_memory_bytes = 0;
-    std::string tracer;                   // back end and instruction set
+    std::string tracer;  // back end and instruction set
     unsigned threads = 0;
 };
 
@@ -56,8 +56,8 @@ struct BakeSink {
     std::function<Status(const Lightmap&)> page;
 };
 
-// Applies the options' sky and sun to the scene, once, before bake() or a render. A sky map named by the options has been
-// loaded into scene.sky by the caller: files are `io`'s. Errors: usage, unsupported (no sun to extract).
+// Applies the options' sky and sun to the scene, once, before bake() or a render. A sky map named by the options has
+// been loaded into scene.sky by the caller: files are `io`'s. Errors: usage, unsupported (no sun to extract).
 Status apply_lighting(Scene& scene, const BakeOptions& options);
 
 // Runs charts, atlas, texels, tracing and post-processing, page by page. The scene is as apply_lighting left it.

@@ -30,8 +30,8 @@ struct Include {
 // How the number of samples of a texel is decided.
 enum class StopRule : std::uint8_t {
     fixed,  // every texel takes `samples`
-    flux,   // Frostbite 2018: every 10 % of the budget, stop where the texel's own standard error is within `error` of its
-            // mean at `confidence`. Biased dark on rare-event light; kept as the published baseline
+    flux,   // Frostbite 2018: every 10 % of the budget, stop where the texel's own standard error is within `error` of
+           // its mean at `confidence`. Biased dark on rare-event light; kept as the published baseline
 };
 
 struct SunOptions {
@@ -65,16 +65,16 @@ struct BakeOptions {
     double direct_scale = 1.0, indirect_scale = 1.0;  // of the layers (direct and sky; indirect), >= 0
     bool two_sided = false;                           // bake both sides of double-sided surfaces
     // Transport
-    std::uint32_t samples = 0;  // paths per texel, 1..2^24; 0: the preset's
-    std::uint32_t bounces = 64; // 0 = direct light only, up to 1024
+    std::uint32_t samples = 0;   // paths per texel, 1..2^24; 0: the preset's
+    std::uint32_t bounces = 64;  // 0 = direct light only, up to 1024
     std::uint64_t seed = 1;
     double ao_distance = 0.0;  // metres; 0: a tenth of the scene's diagonal
     StopRule stop = StopRule::fixed;
     double error = 0.05;       // of StopRule::flux: relative
     double confidence = 0.95;  // of StopRule::flux: 0.5..0.9999
     // Machine
-    unsigned threads = 0;               // 0: one per hardware thread
-    std::uint64_t max_memory_bytes = 0; // 0: no ceiling
+    unsigned threads = 0;                // 0: one per hardware thread
+    std::uint64_t max_memory_bytes = 0;  // 0: no ceiling
 };
 
 }  // namespace lumel

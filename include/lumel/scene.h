@@ -104,10 +104,11 @@ struct Light {
     LightShape shape = LightShape::point;
     Vec3 intensity{1, 1, 1};  // colour times strength, in the unit of the shape
     Vec3 position{};
-    Vec3 direction{0, 0, -1};  // unit: the way light travels (sun, spot), or the normal of the lit side (rectangle, disc)
-    Vec3 half_u{}, half_v{};   // rectangle: half edges, half_u x half_v along direction; disc: two radii
-    float radius = 0.0f;       // point, spot, sphere: metres; 0 = a point
-    float range = 0.0f;        // point, spot: KHR_lights_punctual's range in metres; 0 = infinite
+    Vec3 direction{0, 0,
+                   -1};  // unit: the way light travels (sun, spot), or the normal of the lit side (rectangle, disc)
+    Vec3 half_u{}, half_v{};  // rectangle: half edges, half_u x half_v along direction; disc: two radii
+    float radius = 0.0f;      // point, spot, sphere: metres; 0 = a point
+    float range = 0.0f;       // point, spot: KHR_lights_punctual's range in metres; 0 = infinite
     float inner_cone = 0.0f, outer_cone = 0.785398163f;  // spot: half angles in radians
     float angular_diameter = 0.0f;                       // sun: radians; 0 = a point at infinity
     LightBake bake = LightBake::all;                     // artist control: which layers get this light
@@ -123,9 +124,9 @@ struct SkyMap {
 };
 
 struct Sky {
-    Vec3 color{};                // constant radiance in nits; used where there is no map
-    std::optional<SkyMap> map;   // already scaled to nits
-    float rotation = 0.0f;       // radians about +Y, counter-clockwise seen from above
+    Vec3 color{};               // constant radiance in nits; used where there is no map
+    std::optional<SkyMap> map;  // already scaled to nits
+    float rotation = 0.0f;      // radians about +Y, counter-clockwise seen from above
     [[nodiscard]] bool is_black() const { return !map && color == Vec3{}; }
 };
 

@@ -24,7 +24,9 @@ namespace {
 double cpu_seconds() {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
-    const auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
+    const auto seconds = [](const timeval& t) {
+        return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+    };
     return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
@@ -101,7 +103,8 @@ Result<Atlas> make_atlas_within_memory(const Scene& scene, const WorldGeometry& 
     const std::uint64_t fixed = scene_memory(scene, geometry);
     const bool one_page = charts.scene_wide || options.resolution_width != 0;
     if (max_memory != 0 && !one_page)
-        while (options.max_page > kSmallestPage && fixed + page_memory({options.max_page, options.max_page}) > max_memory)
+        while (options.max_page > kSmallestPage &&
+               fixed + page_memory({options.max_page, options.max_page}) > max_memory)
             options.max_page /= 2;
     LUMEL_TRY(Atlas atlas, make_atlas(scene, geometry, charts, options, context));
     report.predicted_memory_bytes = fixed + largest_page_memory(atlas);
@@ -155,8 +158,8 @@ PageReport page_report(const Lightmap& map, const TexelBuffer& buffer) {
         page.dilated += coverage == Coverage::dilated;
     }
     for (std::size_t i = 0; i < buffer.size(); ++i) page.invalid += map.coverage[i] != Coverage::baked;
-    page.coverage = static_cast<double>(page.texels - page.invalid) /
-                    static_cast<double>(std::uint64_t{page.width} * page.height);
+    page.coverage =
+        static_cast<double>(page.texels - page.invalid) / static_cast<double>(std::uint64_t{page.width} * page.height);
     return page;
 }
 
@@ -248,7 +251,8 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
     const TraceStatistics statistics = tracer->statistics();
     report.rays = statistics.rays;
     report.tracer_seconds = statistics.seconds;
-    report.rays_per_second = report.trace_wall_seconds > 0.0 ? static_cast<double>(report.rays) / report.trace_wall_seconds : 0.0;
+    report.rays_per_second =
+        report.trace_wall_seconds > 0.0 ? static_cast<double>(report.rays) / report.trace_wall_seconds : 0.0;
     report.tracer = std::string(tracer->description());
     report.triangles = geometry.triangle_count();
     report.instances = scene.instances.size();

@@ -14,8 +14,7 @@ constexpr std::uint64_t kTracerBytesPerTriangle = 200;
 constexpr std::uint64_t kProgramBytes = 64u << 20;  // code, libraries, allocator slack
 
 // One covered texel: RadianceSums entry, TexelBuffer entry and its share of triangle lists.
-constexpr std::uint64_t kBytesPerTexel =
-    kLayerCount * sizeof(LayerMoments) + 4 * sizeof(Vec3) + 4 * sizeof(float) + 80;
+constexpr std::uint64_t kBytesPerTexel = kLayerCount * sizeof(LayerMoments) + 4 * sizeof(Vec3) + 4 * sizeof(float) + 80;
 
 }  // namespace
 

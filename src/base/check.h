@@ -18,7 +18,7 @@ template <class... Values>
 
 }  // namespace lumel::detail
 
-#define LUMEL_CHECK(condition, ...)                                                                               \
-    do {                                                                                                          \
+#define LUMEL_CHECK(condition, ...)                                                                                 \
+    do {                                                                                                            \
         if (!(condition)) ::lumel::detail::check_failed(#condition, __FILE__, __LINE__ __VA_OPT__(, ) __VA_ARGS__); \
     } while (false)

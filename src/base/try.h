@@ -7,9 +7,9 @@
 #define LUMEL_CONCAT(a, b) LUMEL_CONCAT_INNER(a, b)
 
 #define LUMEL_TRY(declaration, ...) LUMEL_TRY_NAMED(LUMEL_CONCAT(lumel_result_, __LINE__), declaration, __VA_ARGS__)
-#define LUMEL_TRY_NAMED(name, declaration, ...)             \
-    auto name = (__VA_ARGS__);                              \
-    if (!name.ok()) return std::move(name).error();         \
+#define LUMEL_TRY_NAMED(name, declaration, ...)     \
+    auto name = (__VA_ARGS__);                      \
+    if (!name.ok()) return std::move(name).error(); \
     declaration = std::move(name).value()
 
 // For functions that return Status: nothing to declare.

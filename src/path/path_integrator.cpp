@@ -1,7 +1,7 @@
 // Based on: Kajiya 1986 (path tracing); Veach 1997, ch. 9 (power heuristic) and 10.4 (roulette); O'Donnell 2018,
 // "Precomputed Global Illumination in Frostbite" (sample points per texel, validity by back faces, the stop rule).
-// Differs from Frostbite: Owen-scrambled Sobol points instead of rotated Halton; vertex normals; area lights and sky are
-// combined by MIS; void paths leave the count too.
+// Differs from Frostbite: Owen-scrambled Sobol points instead of rotated Halton; vertex normals; area lights and sky
+// are combined by MIS; void paths leave the count too.
 #include "path/path_integrator.h"
 
 #include <algorithm>
@@ -21,10 +21,11 @@
 namespace lumel {
 namespace {
 
-// Pairs of random numbers of one vertex: direction, sky, point on a local light, (its choice, roulette), then one a sun.
+// Pairs of random numbers of one vertex: direction, sky, point on a local light, (its choice, roulette), then one a
+// sun.
 enum Pair : std::uint32_t { kDirectionPair, kSkyPair, kLocalPair, kChoicePair, kFirstSunPair };
 
-constexpr std::uint32_t kRouletteFrom = 3;  // the first vertex after which a path may be ended by chance
+constexpr std::uint32_t kRouletteFrom = 3;         // the first vertex after which a path may be ended by chance
 constexpr float kShadowShortening = 1.0f - 1e-4f;  // of shadow rays to finite lights, against hitting the light itself
 
 float power_heuristic(float pdf, float other_pdf) {
@@ -60,7 +61,7 @@ public:
 
     std::array<Vertex, kWavefrontLanes> vertex;
     std::array<Vec3, kWavefrontLanes> throughput;
-    std::array<Vec3, kWavefrontLanes> bounced;         // light gathered after the first hit, radiance of the first ray
+    std::array<Vec3, kWavefrontLanes> bounced;  // light gathered after the first hit, radiance of the first ray
     std::array<Vec3, kWavefrontLanes> first_direction;
     std::array<float, kWavefrontLanes> first_pdf;
     std::array<std::uint32_t, kWavefrontLanes> lanes;  // of the paths still alive
@@ -120,7 +121,8 @@ public:
             push(lane, Layer::direct, vertex, lights.sample_sun(sun, u, bounced), key, pdf_of, value_of);
         }
         if (lights.has_sky())
-            push(lane, Layer::sky, vertex, lights.sample_sky(sampler.pair(first_pair + kSkyPair)), key, pdf_of, value_of);
+            push(lane, Layer::sky, vertex, lights.sample_sky(sampler.pair(first_pair + kSkyPair)), key, pdf_of,
+                 value_of);
         if (lights.has_local())
             push(lane, Layer::direct, vertex,
                  lights.sample_local(vertex.position, sampler.one(first_pair + kChoicePair),
@@ -211,7 +213,10 @@ void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w
             const std::uint32_t lane = w.lanes[i];
             queue.sample_all(
                 lane, Sampler(starts[lane].key, starts[lane].index), 0, false,
-                [](float cosine) { return GatherHemisphere::pdf(cosine); }, [](float) { return Vec3{1, 1, 1}; });
+                [](float cosine) { return GatherHemisphere::pdf(cosine); },
+                [](float) {
+                    return Vec3{1, 1, 1};
+                });
         }
         queue.resolve([&](const auto& event) { sink.light(event.lane, event.layer, event.direction, event.value); });
     }
@@ -251,7 +256,8 @@ void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w
             if (hit.back_face && !(triangle.flags & kDoubleSided)) continue;
             if (triangle.flags & kEmissive)
                 arrive(lane, Layer::direct,
-                       lights.emissive(hit.triangle, hit.b1, hit.b2, vertex.position, vertex.direction, hit.t, hit.back_face));
+                       lights.emissive(hit.triangle, hit.b1, hit.b2, vertex.position, vertex.direction, hit.t,
+                                       hit.back_face));
             if (bounce == options_.bounces || (triangle.flags & kOccluderOnly)) continue;
 
             // The path stands on a new surface.
@@ -546,7 +552,8 @@ Result<RadianceSums> gather_page(const TexelBuffer& texels, const ChartSet& char
             for (std::size_t i = first + range.begin; i < first + range.end; ++i) {
                 const std::uint32_t n =
                     sample_points(texels, i, transport.scene, transport.geometry, charts, atlas, points);
-                const std::uint64_t id = (std::uint64_t{texels.page} << 32) | (std::uint64_t{texels.y[i]} << 16) | texels.x[i];
+                const std::uint64_t id =
+                    (std::uint64_t{texels.page} << 32) | (std::uint64_t{texels.y[i]} << 16) | texels.x[i];
                 integrator.gather_texel(std::span(points).first(n), id, *workspaces[range.worker], sums, i, context);
             }
         },

@@ -1,9 +1,9 @@
 // The brute-force integrator: unidirectional path tracing with next-event estimation and multiple importance sampling,
 // in wavefronts of up to 64 paths. It is the truth that faster integrators are measured against.
 //
-// Which rays a texel sends (docs/conventions.md, "The hemisphere of a texel"): the upper hemisphere of the vertex normal,
-// with density (1/2 + cos)/(2 pi), from sample points spread over the texel. A path whose first ray meets the back of a
-// single-sided surface is void: it leaves the sums and the count, of every layer and moment alike.
+// Which rays a texel sends (docs/conventions.md, "The hemisphere of a texel"): the upper hemisphere of the vertex
+// normal, with density (1/2 + cos)/(2 pi), from sample points spread over the texel. A path whose first ray meets the
+// back of a single-sided surface is void: it leaves the sums and the count, of every layer and moment alike.
 #pragma once
 
 #include <cstdint>
@@ -72,8 +72,8 @@ public:
     void gather_texel(std::span<const SamplePoint> points, std::uint64_t id, Workspace& workspace, RadianceSums& out,
                       std::size_t index, const Context& context) const;
 
-    // Irradiance I about the start's normal of each path (at most kWavefrontLanes), all layers; void paths give zero and
-    // valid = 0. For pictures: `lumel render`.
+    // Irradiance I about the start's normal of each path (at most kWavefrontLanes), all layers; void paths give zero
+    // and valid = 0. For pictures: `lumel render`.
     void gather_irradiance(std::span<const PathStart> starts, Workspace& workspace, std::span<Vec3> irradiance,
                            std::span<std::uint8_t> valid) const;
 

@@ -10,9 +10,9 @@
 namespace lumel {
 namespace {
 
-constexpr std::uint32_t kFilmPair = 0xf11u;       // pair of dimensions of the position in the pixel
-constexpr int kMaxCulledFaces = 32;               // back faces that one camera ray may pass through
-constexpr std::uint64_t kPictureKey = 0x9c7u;     // keeps pixels' point sets apart from texels'
+constexpr std::uint32_t kFilmPair = 0xf11u;    // pair of dimensions of the position in the pixel
+constexpr int kMaxCulledFaces = 32;            // back faces that one camera ray may pass through
+constexpr std::uint64_t kPictureKey = 0x9c7u;  // keeps pixels' point sets apart from texels'
 
 class Lens {
 public:
@@ -24,7 +24,8 @@ public:
           inverse_height_(1.0f / static_cast<float>(options.height)) {}
 
     [[nodiscard]] Ray ray(float x, float y) const {
-        const Vec3 local{(2.0f * x * inverse_width_ - 1.0f) * tan_x_, (1.0f - 2.0f * y * inverse_height_) * tan_y_, -1.0f};
+        const Vec3 local{(2.0f * x * inverse_width_ - 1.0f) * tan_x_, (1.0f - 2.0f * y * inverse_height_) * tan_y_,
+                         -1.0f};
         Ray out;
         out.origin = camera_.transform.translation;
         out.direction = normalize(transform_vector(camera_.transform, local));
@@ -95,7 +96,8 @@ private:
     // Emission or sky of sample i; queues its surface for path tracing unless the bake lights it.
     Vec3 shade(std::uint32_t i, std::uint32_t& traced) {
         const Hit& hit = hits_[i];
-        if (hit.missed()) return transport_.lights.has_sky() ? transport_.lights.sky(rays_[i].direction).radiance : Vec3{};
+        if (hit.missed())
+            return transport_.lights.has_sky() ? transport_.lights.sky(rays_[i].direction).radiance : Vec3{};
         if (culled(hit)) return {};
         ++surfaces_;
         const Vec3 albedo = transport_.surfaces.albedo(hit.triangle, hit.b1, hit.b2);
@@ -117,7 +119,8 @@ private:
     void path_trace(std::uint32_t key, std::uint32_t base, std::uint32_t n, Vec3& lit, std::uint32_t& lit_count) {
         if (n == 0) return;
         integrator_.surface_starts(std::span(points_).first(n), std::span(sides_).first(n), *workspace_, surface_);
-        for (std::uint32_t k = 0; k < n; ++k) starts_[k] = {surface_[k].origin, surface_[k].normal, key, base + lane_[k]};
+        for (std::uint32_t k = 0; k < n; ++k)
+            starts_[k] = {surface_[k].origin, surface_[k].normal, key, base + lane_[k]};
         integrator_.gather_irradiance(std::span(starts_).first(n), *workspace_, std::span(irradiance_).first(n),
                                       std::span(valid_).first(n));
         for (std::uint32_t k = 0; k < n; ++k) {

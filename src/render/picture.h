@@ -22,8 +22,8 @@ struct PictureOptions {
 // I = E/pi of the bake at a point of the front side of a world triangle; nothing where it has no texels.
 using BakedIrradiance = std::function<std::optional<Vec3>(std::uint32_t triangle, float b1, float b2)>;
 
-// Radiance per pixel, 3 channels. Single-sided surfaces are not seen from behind, as in a viewer. With `baked`, surfaces
-// that have texels take their light from it; all others are path-traced. Error: cancelled.
+// Radiance per pixel, 3 channels. Single-sided surfaces are not seen from behind, as in a viewer. With `baked`,
+// surfaces that have texels take their light from it; all others are path-traced. Error: cancelled.
 Result<Image> render_picture(const Transport& transport, const PathOptions& path, const Camera& camera,
                              const PictureOptions& options, const BakedIrradiance* baked, Context& context);
 

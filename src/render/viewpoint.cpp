@@ -22,7 +22,8 @@ struct Candidate {
 };
 
 // What there is to see around a point: score 0 where it is inside a solid or sees mostly back faces or nothing.
-Candidate look_around(Vec3 eye, std::uint32_t key, const Tracer& tracer, const WorldGeometry& geometry, float diagonal) {
+Candidate look_around(Vec3 eye, std::uint32_t key, const Tracer& tracer, const WorldGeometry& geometry,
+                      float diagonal) {
     std::array<Ray, kProbeRays> rays;
     std::array<Hit, kProbeRays> hits;
     for (std::uint32_t i = 0; i < kProbeRays; ++i) {
@@ -77,17 +78,17 @@ Camera overview(const WorldGeometry& geometry, std::size_t corner) {
 
 std::vector<Camera> choose_views(const Scene& scene, const WorldGeometry& geometry, const Tracer& tracer,
                                  std::size_t count) {
-    std::vector<Camera> views(scene.cameras.begin(),
-                              scene.cameras.begin() + static_cast<std::ptrdiff_t>(std::min(count, scene.cameras.size())));
+    std::vector<Camera> views(scene.cameras.begin(), scene.cameras.begin() + static_cast<std::ptrdiff_t>(std::min(
+                                                                                 count, scene.cameras.size())));
     const Vec3 size = geometry.bounds_max - geometry.bounds_min;
     const float diagonal = length(size);
     std::vector<Candidate> candidates;
     for (std::uint32_t i = 0; i < kCandidates; ++i) {
         const Sampler sampler(kKey, i);
         const Vec2 ground = sampler.pair(1);
-        const Vec3 eye = geometry.bounds_min +
-                         Vec3{size.x * (0.04f + 0.92f * ground.x), size.y * (0.15f + 0.6f * sampler.one(2)),
-                              size.z * (0.04f + 0.92f * ground.y)};
+        const Vec3 eye =
+            geometry.bounds_min + Vec3{size.x * (0.04f + 0.92f * ground.x), size.y * (0.15f + 0.6f * sampler.one(2)),
+                                       size.z * (0.04f + 0.92f * ground.y)};
         const Candidate candidate = look_around(eye, mix32(kKey + i), tracer, geometry, diagonal);
         if (candidate.score > 0.0f) candidates.push_back(candidate);
     }
