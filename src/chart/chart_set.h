@@ -21,11 +21,11 @@ struct Chart {
 
 // Chart units are metres in mesh space (isometric flattening), or units of TEXCOORD_1 for a kept scene-wide layout.
 struct MeshCharts {
-    std::vector<std::uint32_t> chart_of_triangle;   // kNone for zero-area triangles
-    std::vector<std::array<Vec2, 3>> uv;            // per triangle corner
-    std::vector<std::uint32_t> order;               // triangle ids grouped by chart
+    std::vector<std::uint32_t> chart_of_triangle;  // kNone for zero-area triangles
+    std::vector<std::array<Vec2, 3>> uv;           // per triangle corner
+    std::vector<std::uint32_t> order;              // triangle ids grouped by chart
     std::vector<Chart> charts;
-    bool from_uv1 = false;                          // charts are the islands of the file's TEXCOORD_1
+    bool from_uv1 = false;  // charts are the islands of the file's TEXCOORD_1
 };
 
 struct ChartSet {
@@ -57,6 +57,9 @@ struct Atlas {
     };
     [[nodiscard]] TriangleUv triangle_uv(const ChartSet& charts, const WorldGeometry& geometry, const Scene& scene,
                                          std::uint32_t world_triangle) const;
+    // The same by a triangle of the mesh of a baked instance.
+    [[nodiscard]] TriangleUv mesh_triangle_uv(const ChartSet& charts, const Scene& scene, std::uint32_t instance,
+                                              std::uint32_t mesh_triangle) const;
 };
 
 enum class Uv1Policy : std::uint8_t { automatic, scene, mesh, ignore };
@@ -76,11 +79,13 @@ struct UvOverlap {
 };
 
 // Charts of every mesh some lightmap instance uses. Deterministic for any thread count.
-// Diagnostics: "uv1-rejected" (why a file's TEXCOORD_1 was not kept), "uv-overlap", "zero-area-triangle", "unwrap-fallback".
+// Diagnostics: "uv1-rejected" (why a file's TEXCOORD_1 was not kept), "uv-overlap", "unwrap-fallback". Errors: usage
+// where Uv1Policy::scene was asked and some TEXCOORD_1 is missing or leaves [0, 1].
 Result<ChartSet> make_charts(const Scene& scene, const WorldGeometry& geometry, const ChartOptions& options,
                              Context& context);
 
 // Places the charts of every lightmap instance. Errors: usage where they cannot fit the asked resolution.
+// Diagnostics: "uv-bleeding" (nodes of a kept layout that share texels), "chart-clamped" (charts larger than a page).
 Result<Atlas> make_atlas(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts,
                          const ChartOptions& options, Context& context);
 

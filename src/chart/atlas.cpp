@@ -1,0 +1,186 @@
+// make_atlas: how large each chart is drawn and where it lies.
+#include <algorithm>
+#include <string>
+
+#include "base/check.h"
+#include "base/try.h"
+#include "chart/chart_set.h"
+#include "chart/density.h"
+#include "chart/kept_layout.h"
+#include "chart/pack.h"
+
+namespace lumel {
+namespace {
+
+Error cancelled_error() { return {ErrorCode::cancelled, "cancelled while packing", "", ""}; }
+
+// Placement ranges: as many as the instance's mesh has charts, none for instances without texels.
+std::vector<std::uint32_t> placement_ranges(const Scene& scene, const ChartSet& charts) {
+    std::vector<std::uint32_t> first{0};
+    for (const Instance& instance : scene.instances) {
+        const bool lit = instance.node_class == NodeClass::lightmap;
+        first.push_back(first.back() +
+                        (lit ? static_cast<std::uint32_t>(charts.meshes[instance.mesh].charts.size()) : 0));
+    }
+    return first;
+}
+
+Atlas kept_atlas(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts, const ChartOptions& options,
+                 Context& context) {
+    Atlas atlas;
+    atlas.first_placement = placement_ranges(scene, charts);
+    const AtlasPage page = kept_page(scene, geometry, charts, options);
+    atlas.pages.push_back(page);
+    const ChartPlacement placement{0, {static_cast<float>(page.width), static_cast<float>(page.height)}, {}};
+    atlas.placements.assign(atlas.first_placement.back(), placement);
+    report_bleeding(scene, charts, page, context.diagnostics);
+    return atlas;
+}
+
+class AtlasMaker {
+public:
+    AtlasMaker(const Scene& scene, const ChartSet& charts, const ChartOptions& options, Context& context)
+        : scene_(scene),
+          charts_(charts),
+          options_(options),
+          context_(context),
+          instances_(chart_instances(scene, charts)) {}
+
+    Result<Atlas> run() {
+        Atlas atlas;
+        atlas.first_placement = placement_ranges(scene_, charts_);
+        LUMEL_CHECK(atlas.first_placement.back() == instances_.size());
+        if (instances_.empty()) return atlas;
+        const bool fixed = options_.resolution_width != 0;
+        LUMEL_TRY_STATUS(fixed ? fit_resolution() : fill_pages());
+        atlas.texels_per_metre = density_;
+        for (const PackPage& page : packing_.pages) atlas.pages.push_back({page.width, page.height});
+        for (std::size_t k = 0; k < instances_.size(); ++k) atlas.placements.push_back(placement(k));
+        return atlas;
+    }
+
+private:
+    // Pages as needed, at the density asked or solved for.
+    Status fill_pages() {
+        const SizeLimit limit{options_.max_page, options_.max_page};
+        density_ = options_.texels_per_metre;
+        if (!(density_ > 0.0)) {
+            LUMEL_TRY(density_, solve_density(charts_, instances_, options_.texel_budget, limit, context_));
+        }
+        if (!draw(limit)) return cancelled_error();
+        packing_ = pack(sized_.masks, items(), options_.max_page, cancelled_);
+        if (!packing_.complete) return cancelled_error();
+        report_clamped();
+        return success();
+    }
+
+    // One page of a given size, at the density asked or the highest that fits: from an all but full page down in steps
+    // of three percent of its texels.
+    Status fit_resolution() {
+        constexpr double kStep = 0.97;
+        const SizeLimit limit{options_.resolution_width, options_.resolution_height};
+        if (limit.width < 2 || limit.height < 2) return no_room();
+        if (options_.texels_per_metre > 0.0) {
+            density_ = options_.texels_per_metre;
+            LUMEL_TRY(const bool fits, try_resolution(limit));
+            return fits ? success() : no_room();
+        }
+        const double page = static_cast<double>(limit.width) * limit.height;
+        for (double share = 0.99; share > 1e-6; share *= kStep) {
+            LUMEL_TRY(density_, solve_density(charts_, instances_, share * page, limit, context_));
+            LUMEL_TRY(const bool fits, try_resolution(limit));
+            if (fits) return success();
+            if (sized_.used == least_texels()) break;
+        }
+        return no_room();
+    }
+
+    Result<bool> try_resolution(SizeLimit limit) {
+        if (!draw(limit)) return cancelled_error();
+        if (sized_.used > std::uint64_t{limit.width} * limit.height) return false;
+        packing_ = pack_one_page(sized_.masks, items(), limit.width, limit.height, cancelled_);
+        if (context_.cancelled()) return cancelled_error();
+        if (packing_.complete) report_clamped();
+        return packing_.complete;
+    }
+
+    [[nodiscard]] std::uint64_t least_texels() const { return 4 * std::uint64_t{instances_.size()}; }
+
+    [[nodiscard]] Error no_room() const {
+        const std::string size =
+            std::to_string(options_.resolution_width) + "x" + std::to_string(options_.resolution_height);
+        return {ErrorCode::usage,
+                "the " + std::to_string(instances_.size()) + " charts do not fit one page of " + size + " texels",
+                scene_.source,
+                options_.texels_per_metre > 0.0 ? "lower --texels-per-metre, or leave it out to have it solved"
+                                                : "ask for a larger --resolution, or none to have several pages"};
+    }
+
+    bool draw(SizeLimit limit) {
+        std::optional<SizedCharts> sized = size_charts(charts_, instances_, density_, limit, context_);
+        if (sized) sized_ = std::move(*sized);
+        return sized.has_value();
+    }
+
+    [[nodiscard]] std::vector<PackItem> items() const {
+        std::vector<PackItem> out;
+        out.reserve(instances_.size());
+        for (std::size_t k = 0; k < instances_.size(); ++k) out.push_back({sized_.mask_of[k], instances_[k].instance});
+        return out;
+    }
+
+    void report_clamped() {
+        if (sized_.clamped > 0)
+            context_.diagnostics.add("chart-clamped", "charts larger than a page got fewer texels per metre", "",
+                                     sized_.clamped);
+    }
+
+    [[nodiscard]] ChartPlacement placement(std::size_t k) const {
+        const ChartMask& mask = sized_.masks[sized_.mask_of[k]];
+        const Chart& chart = charts_.meshes[instances_[k].mesh].charts[instances_[k].chart];
+        const PackSpot& spot = packing_.spots[k];
+        const TexelMap map = fit_to_centres(chart.min, chart.max, mask.width, mask.height, spot.x, spot.y);
+        return {spot.page,
+                {static_cast<float>(map.scale_x), static_cast<float>(map.scale_y)},
+                {static_cast<float>(map.offset_x), static_cast<float>(map.offset_y)}};
+    }
+
+    const Scene& scene_;
+    const ChartSet& charts_;
+    const ChartOptions& options_;
+    Context& context_;
+    const std::function<bool()> cancelled_ = [this] { return context_.cancelled(); };
+    std::vector<ChartInstance> instances_;
+    double density_ = 0.0;
+    SizedCharts sized_;
+    Packing packing_;
+};
+
+}  // namespace
+
+Result<Atlas> make_atlas(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts,
+                         const ChartOptions& options, Context& context) {
+    if (charts.scene_wide) return kept_atlas(scene, geometry, charts, options, context);
+    return AtlasMaker(scene, charts, options, context).run();
+}
+
+Atlas::TriangleUv Atlas::triangle_uv(const ChartSet& charts, const WorldGeometry& geometry, const Scene& scene,
+                                     std::uint32_t world_triangle) const {
+    const WorldTriangle& triangle = geometry.triangles[world_triangle];
+    return mesh_triangle_uv(charts, scene, triangle.instance, triangle.mesh_triangle);
+}
+
+Atlas::TriangleUv Atlas::mesh_triangle_uv(const ChartSet& charts, const Scene& scene, std::uint32_t instance,
+                                          std::uint32_t mesh_triangle) const {
+    if (first_placement[instance] == first_placement[instance + 1]) return {};
+    const MeshCharts& mesh = charts.meshes[scene.instances[instance].mesh];
+    const std::uint32_t chart = mesh.chart_of_triangle[mesh_triangle];
+    if (chart == kNone) return {};
+    const ChartPlacement& place = placements[first_placement[instance] + chart];
+    TriangleUv out;
+    out.page = place.page;
+    for (std::size_t k = 0; k < 3; ++k) out.texels[k] = mesh.uv[mesh_triangle][k] * place.scale + place.offset;
+    return out;
+}
+
+}  // namespace lumel

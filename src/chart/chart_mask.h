@@ -1,0 +1,112 @@
+// The texels of a chart: those that a bilinear 2x2 lookup of any of its points can touch.
+//
+// Based on: O'Donnell, "Precomputed Global Illumination in Frostbite" (2018): a texel belongs to a chart if the box of
+// side 2 around its centre meets one of the chart's triangles; the chart's box is fitted to texel centres, so that its
+// border costs no texel more.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "chart/overlap.h"
+
+namespace lumel {
+
+// Rows of bits, each row starting a new word; bit x of a row is bit x % 64 of word x / 64.
+struct ChartMask {
+    std::uint32_t width = 0, height = 0, words_per_row = 0;
+    std::uint64_t used = 0;  // bits set
+    std::vector<std::uint64_t> bits;
+
+    ChartMask() = default;
+    ChartMask(std::uint32_t w, std::uint32_t h)
+        : width(w), height(h), words_per_row((w + 63) / 64), bits(std::size_t{words_per_row} * h, 0) {}
+
+    [[nodiscard]] bool get(std::uint32_t x, std::uint32_t y) const {
+        return (bits[std::size_t{y} * words_per_row + x / 64] >> (x % 64)) & 1;
+    }
+    // Sets x0 .. x1 - 1 of a row.
+    void set_span(std::uint32_t y, std::uint32_t x0, std::uint32_t x1);
+    void count();
+};
+
+// uv_texels = uv * scale + offset, in double precision.
+struct TexelMap {
+    double scale_x = 1.0, scale_y = 1.0, offset_x = 0.0, offset_y = 0.0;
+};
+
+// Calls span(y, x0, x1) for the texels x0 .. x1 - 1 of row y that belong to the triangle, clipped to width x height.
+// Open boxes: a triangle that only touches a box does not take it.
+template <class Span>
+void for_each_mask_span(const UvTriangle& triangle, const TexelMap& map, std::uint32_t width, std::uint32_t height,
+                        const Span& span);
+
+// The mask of a chart whose box spans the centres of `width` x `height` texels: steps of (width - 1) x (height - 1).
+// `low` and `high` are the bounds of its UVs.
+ChartMask make_mask(std::span<const std::uint32_t> triangles, std::span<const UvTriangle> uv, Vec2 low, Vec2 high,
+                    std::uint32_t width, std::uint32_t height);
+
+// The map that puts `low` on the centre of texel (x, y) and `high` on that of (x + width - 1, y + height - 1).
+TexelMap fit_to_centres(Vec2 low, Vec2 high, std::uint32_t width, std::uint32_t height, double x, double y);
+
+// ---- Inline parts ---------------------------------------------------------------------------------------------------
+
+namespace detail {
+
+// Range of x of the part of a triangle with y in [low, high]; empty (low > high) where there is none.
+struct XRange {
+    double low = 1e300, high = -1e300;
+    void add(double x) {
+        low = x < low ? x : low;
+        high = x > high ? x : high;
+    }
+};
+
+inline XRange clip_to_rows(const double (&x)[3], const double (&y)[3], double low, double high) {
+    XRange range;
+    for (int k = 0; k < 3; ++k) {
+        const int n = k == 2 ? 0 : k + 1;
+        if (y[k] >= low && y[k] <= high) range.add(x[k]);
+        for (const double level : {low, high})
+            if ((y[k] < level) != (y[n] < level) && y[k] != y[n])
+                range.add(x[k] + (x[n] - x[k]) * ((level - y[k]) / (y[n] - y[k])));
+    }
+    return range;
+}
+
+}  // namespace detail
+
+template <class Span>
+void for_each_mask_span(const UvTriangle& triangle, const TexelMap& map, std::uint32_t width, std::uint32_t height,
+                        const Span& span) {
+    // Rounding of coordinates that lie on texel centres by construction must not reach the next texel.
+    constexpr double kSnap = 1e-4;
+    double x[3], y[3], y_low = 1e300, y_high = -1e300;
+    for (int k = 0; k < 3; ++k) {
+        x[k] = double{triangle[k].x} * map.scale_x + map.offset_x;
+        y[k] = double{triangle[k].y} * map.scale_y + map.offset_y;
+        y_low = y[k] < y_low ? y[k] : y_low;
+        y_high = y[k] > y_high ? y[k] : y_high;
+    }
+    // Texel j takes part where j + 0.5 lies in the open interval (low - 1, high + 1).
+    const auto first = [](double low, std::uint32_t size) {
+        const double j = std::floor(low - 1.5 + kSnap) + 1.0;
+        return static_cast<std::uint32_t>(j < 0.0 ? 0.0 : (j > size ? size : j));
+    };
+    const auto end = [](double high, std::uint32_t size) {
+        const double j = std::ceil(high + 0.5 - kSnap);
+        return static_cast<std::uint32_t>(j < 0.0 ? 0.0 : (j > size ? size : j));
+    };
+    const std::uint32_t row_end = end(y_high, height);
+    for (std::uint32_t row = first(y_low, height); row < row_end; ++row) {
+        const detail::XRange range = detail::clip_to_rows(x, y, row - 0.5, row + 1.5);
+        if (range.low > range.high) continue;
+        const std::uint32_t x0 = first(range.low, width), x1 = end(range.high, width);
+        if (x0 < x1) span(row, x0, x1);
+    }
+}
+
+}  // namespace lumel

@@ -1,0 +1,44 @@
+#include "chart/chart_picture.h"
+
+#include "base/hash.h"
+#include "chart/chart_mask.h"
+
+namespace lumel {
+
+std::vector<std::uint32_t> chart_ids(const Scene& scene, const ChartSet& charts, const Atlas& atlas,
+                                     std::uint32_t page) {
+    const AtlasPage& size = atlas.pages[page];
+    std::vector<std::uint32_t> ids(std::size_t{size.width} * size.height, kNone);
+    for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
+        const std::uint32_t first = atlas.first_placement[i];
+        if (first == atlas.first_placement[i + 1]) continue;
+        const MeshCharts& mesh = charts.meshes[scene.instances[i].mesh];
+        for (std::uint32_t c = 0; c < mesh.charts.size(); ++c) {
+            const ChartPlacement& place = atlas.placements[first + c];
+            if (place.page != page) continue;
+            const TexelMap map{place.scale.x, place.scale.y, place.offset.x, place.offset.y};
+            for (std::uint32_t k = 0; k < mesh.charts[c].count; ++k)
+                for_each_mask_span(mesh.uv[mesh.order[mesh.charts[c].first + k]], map, size.width, size.height,
+                                   [&](std::uint32_t y, std::uint32_t x0, std::uint32_t x1) {
+                                       for (std::uint32_t x = x0; x < x1; ++x) {
+                                           std::uint32_t& id = ids[std::size_t{y} * size.width + x];
+                                           if (id == kNone) id = first + c;
+                                       }
+                                   });
+        }
+    }
+    return ids;
+}
+
+std::vector<std::uint8_t> colour_ids(const std::vector<std::uint32_t>& ids) {
+    std::vector<std::uint8_t> rgb;
+    rgb.reserve(3 * ids.size());
+    for (const std::uint32_t id : ids) {
+        const std::uint64_t h = mix64(std::uint64_t{id} + 1);
+        for (int c = 0; c < 3; ++c)
+            rgb.push_back(id == kNone ? 0 : static_cast<std::uint8_t>(64 + ((h >> (8 * c)) & 0xff) * 191 / 255));
+    }
+    return rgb;
+}
+
+}  // namespace lumel

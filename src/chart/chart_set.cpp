@@ -1,0 +1,243 @@
+// make_charts: which UVs each mesh gets, and the charts made of them.
+#include "chart/chart_set.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "base/check.h"
+#include "base/parallel.h"
+#include "base/try.h"
+#include "chart/kept_layout.h"
+#include "chart/mesh_charts.h"
+#include "chart/parameterize.h"
+#include "chart/segment.h"
+#include "chart/topology.h"
+#include "chart/uv1.h"
+
+namespace lumel {
+namespace {
+
+Error cancelled_error() { return {ErrorCode::cancelled, "cancelled while unwrapping", "", ""}; }
+
+// The meshes that some lightmap instance uses, largest first, so that threads share the work evenly.
+struct UsedMeshes {
+    std::vector<std::uint32_t> meshes;    // indices into Scene::meshes
+    std::vector<std::uint32_t> instance;  // per mesh of the scene: the first lightmap instance, for messages
+    bool repeated = false;                // some mesh has two lightmap instances
+};
+
+UsedMeshes used_meshes(const Scene& scene) {
+    UsedMeshes used;
+    used.instance.assign(scene.meshes.size(), kNone);
+    for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
+        if (scene.instances[i].node_class != NodeClass::lightmap) continue;
+        std::uint32_t& first = used.instance[scene.instances[i].mesh];
+        if (first != kNone) {
+            used.repeated = true;
+        } else {
+            first = i;
+            used.meshes.push_back(scene.instances[i].mesh);
+        }
+    }
+    std::sort(used.meshes.begin(), used.meshes.end(), [&](std::uint32_t a, std::uint32_t b) {
+        const std::size_t na = scene.meshes[a]->triangles.size(), nb = scene.meshes[b]->triangles.size();
+        return na != nb ? na > nb : a < b;
+    });
+    return used;
+}
+
+std::string node_name(const Scene& scene, std::uint32_t instance) {
+    const std::string& name = scene.instances[instance].name;
+    return name.empty() ? "node " + std::to_string(instance) : "node '" + name + "'";
+}
+
+class ChartMaker {
+public:
+    ChartMaker(const Scene& scene, const WorldGeometry& geometry, const ChartOptions& options, Context& context)
+        : scene_(scene),
+          geometry_(geometry),
+          options_(options),
+          context_(context),
+          used_(used_meshes(scene)),
+          topology_(scene.meshes.size()) {
+        charts_.meshes.resize(scene.meshes.size());
+    }
+
+    Result<ChartSet> run() {
+        if (!build_topologies()) return cancelled_error();
+        LUMEL_TRY(const bool kept, keep_scene_wide());
+        if (kept) return std::move(charts_);
+        std::vector<std::uint32_t> own;
+        if (!keep_mesh_layouts(own) || !unwrap(own)) return cancelled_error();
+        return std::move(charts_);
+    }
+
+private:
+    [[nodiscard]] const Mesh& mesh(std::uint32_t m) const { return *scene_.meshes[m]; }
+
+    bool build_topologies() {
+        return parallel_for(context_, used_.meshes.size(), 1, [&](const ChunkRange& range) {
+            const std::uint32_t m = used_.meshes[range.begin];
+            topology_[m] = build_topology(mesh(m));
+        });
+    }
+
+    // ---- One layout for the scene
+    // ------------------------------------------------------------------------------------
+
+    // Keeps TEXCOORD_1 of the whole scene as one atlas where that was asked or is possible.
+    Result<bool> keep_scene_wide() {
+        if (options_.uv1 == Uv1Policy::mesh || options_.uv1 == Uv1Policy::ignore || used_.meshes.empty()) return false;
+        const bool asked = options_.uv1 == Uv1Policy::scene;
+        for (const std::uint32_t m : used_.meshes) {
+            const std::string reason = judge_uv1_coordinates(mesh(m), topology_[m].area);
+            if (reason.empty()) continue;
+            if (!asked) return false;
+            return Error{ErrorCode::usage, "TEXCOORD_1 cannot be kept as one atlas of the scene: " + reason,
+                         node_name(scene_, used_.instance[m]), "use --uv1 mesh or --uv1 ignore"};
+        }
+        if (used_.repeated && !asked) return false;
+        const std::vector<UvOverlap> overlaps = scene_overlaps();
+        if (!overlaps.empty() && !asked) return false;
+        report_overlaps(overlaps);
+        for (const std::uint32_t m : used_.meshes) charts_.meshes[m] = uv1_islands(mesh(m), topology_[m].area, 1.0f);
+        charts_.scene_wide = true;
+        const AtlasPage page = kept_page(scene_, geometry_, charts_, options_);
+        merge_charts_sharing_texels(scene_, charts_, page);
+        return true;
+    }
+
+    // Overlapping pairs over all lightmap instances.
+    [[nodiscard]] std::vector<UvOverlap> scene_overlaps() const {
+        std::vector<UvTriangle> uv;
+        std::vector<std::pair<std::uint32_t, std::uint32_t>> from;  // instance, triangle
+        for (std::uint32_t i = 0; i < scene_.instances.size(); ++i) {
+            if (scene_.instances[i].node_class != NodeClass::lightmap) continue;
+            const std::uint32_t m = scene_.instances[i].mesh;
+            const std::vector<UvTriangle> triangles = uv1_triangles(mesh(m));
+            for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+                if (topology_[m].area[t] == 0.0) continue;
+                uv.push_back(triangles[t]);
+                from.emplace_back(i, t);
+            }
+        }
+        std::vector<UvOverlap> overlaps;
+        for (const auto& [a, b] : find_overlaps(uv, uv1_tolerance(), kMaxOverlaps).pairs)
+            overlaps.push_back({from[a].first, from[a].second, from[b].first, from[b].second});
+        return overlaps;
+    }
+
+    void report_overlaps(const std::vector<UvOverlap>& overlaps) {
+        for (const UvOverlap& o : overlaps)
+            context_.diagnostics.add("uv-overlap", "pairs of triangles overlap in TEXCOORD_1",
+                                     node_name(scene_, o.instance_a) + " triangle " + std::to_string(o.triangle_a) +
+                                         " and " + node_name(scene_, o.instance_b) + " triangle " +
+                                         std::to_string(o.triangle_b));
+    }
+
+    // ---- One layout per mesh
+    // -----------------------------------------------------------------------------------------
+
+    // Meshes whose TEXCOORD_1 is fit keep its islands; the others are listed in `own`. False: cancelled.
+    bool keep_mesh_layouts(std::vector<std::uint32_t>& own) {
+        if (options_.uv1 == Uv1Policy::ignore) {
+            own = used_.meshes;
+            return true;
+        }
+        std::vector<Uv1Verdict> verdicts(scene_.meshes.size());
+        const bool done = parallel_for(context_, used_.meshes.size(), 1, [&](const ChunkRange& range) {
+            const std::uint32_t m = used_.meshes[range.begin];
+            const std::vector<double>& areas = topology_[m].area;
+            verdicts[m] = judge_uv1(mesh(m), areas);
+            if (verdicts[m].fit())
+                charts_.meshes[m] = uv1_islands(mesh(m), areas, static_cast<float>(uv1_scale(mesh(m), areas)));
+        });
+        for (const std::uint32_t m : used_.meshes)
+            if (!verdicts[m].fit()) own.push_back(m);
+        std::vector<std::uint32_t> by_index = own;
+        std::sort(by_index.begin(), by_index.end());
+        for (const std::uint32_t m : by_index)
+            if (!mesh(m).uv1.empty()) report_rejected(m, verdicts[m]);
+        return done;
+    }
+
+    void report_rejected(std::uint32_t m, const Uv1Verdict& verdict) {
+        const std::uint32_t i = used_.instance[m];
+        context_.diagnostics.add("uv1-rejected", "TEXCOORD_1 is not fit for a lightmap; charts were made instead",
+                                 node_name(scene_, i) + ": " + verdict.reason);
+        std::vector<UvOverlap> overlaps;
+        for (const auto& [a, b] : verdict.overlaps) overlaps.push_back({i, a, i, b});
+        report_overlaps(overlaps);
+    }
+
+    // ---- Charts of our own
+    // -------------------------------------------------------------------------------------------
+
+    struct Job {
+        std::uint32_t mesh;
+        std::vector<std::uint32_t> cluster;
+        Parameterized result;
+    };
+
+    bool unwrap(const std::vector<std::uint32_t>& own) {
+        const std::function<bool()> cancelled = [this] { return context_.cancelled(); };
+        std::vector<std::vector<std::vector<std::uint32_t>>> clusters(own.size());
+        const bool segmented = parallel_for(
+            context_, own.size(), 1,
+            [&](const ChunkRange& range) {
+                const std::uint32_t m = own[range.begin];
+                clusters[range.begin] = segment(mesh(m), topology_[m], {}, cancelled);
+            },
+            "segment");
+        if (!segmented) return false;
+
+        std::vector<Job> jobs;
+        for (std::size_t k = 0; k < own.size(); ++k)
+            for (auto& cluster : clusters[k]) jobs.push_back({own[k], std::move(cluster), {}});
+        const bool flattened = parallel_for(
+            context_, jobs.size(), 16,
+            [&](const ChunkRange& range) {
+                for (std::size_t j = range.begin; j < range.end; ++j)
+                    jobs[j].result =
+                        parameterize(mesh(jobs[j].mesh), topology_[jobs[j].mesh], jobs[j].cluster, {}, cancelled);
+            },
+            "unwrap");
+        if (!flattened || context_.cancelled()) return false;
+        collect(jobs);
+        return true;
+    }
+
+    // Jobs of one mesh are consecutive.
+    void collect(std::vector<Job>& jobs) {
+        for (std::size_t j = 0; j < jobs.size();) {
+            const std::uint32_t m = jobs[j].mesh;
+            std::vector<FlatChart> flat;
+            std::uint32_t fallbacks = 0;
+            for (; j < jobs.size() && jobs[j].mesh == m; ++j) {
+                std::move(jobs[j].result.charts.begin(), jobs[j].result.charts.end(), std::back_inserter(flat));
+                fallbacks += jobs[j].result.fallbacks;
+            }
+            charts_.meshes[m] = assemble_charts(mesh(m).triangles.size(), std::move(flat));
+            if (fallbacks > 0)
+                context_.diagnostics.add("unwrap-fallback", "clusters were cut by the sides of a box, as no map fitted",
+                                         node_name(scene_, used_.instance[m]), fallbacks);
+        }
+    }
+
+    const Scene& scene_;
+    const WorldGeometry& geometry_;
+    const ChartOptions& options_;
+    Context& context_;
+    UsedMeshes used_;
+    std::vector<MeshTopology> topology_;
+    ChartSet charts_;
+};
+
+}  // namespace
+
+Result<ChartSet> make_charts(const Scene& scene, const WorldGeometry& geometry, const ChartOptions& options,
+                             Context& context) {
+    return ChartMaker(scene, geometry, options, context).run();
+}
+
+}  // namespace lumel

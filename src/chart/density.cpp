@@ -1,0 +1,199 @@
+#include "chart/density.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+#include "base/parallel.h"
+
+namespace lumel {
+namespace {
+
+// ---- World scale ----------------------------------------------------------------------------------------------------
+
+using Vec3d = std::array<double, 3>;
+
+// Squared length of the image of a mesh-space direction.
+double stretched(const Affine& m, const Vec3d& v) {
+    double sum = 0.0;
+    for (std::size_t row = 0; row < 3; ++row) {
+        double x = 0.0;
+        for (std::size_t c = 0; c < 3; ++c) x += double{m.columns[c][row]} * v[c];
+        sum += x * x;
+    }
+    return sum;
+}
+
+double column_product(const Affine& m, std::size_t a, std::size_t b) {
+    double sum = 0.0;
+    for (std::size_t row = 0; row < 3; ++row) sum += double{m.columns[a][row]} * m.columns[b][row];
+    return sum;
+}
+
+// Root mean square of the three axes' factors.
+double mean_scale(const Affine& m) {
+    return std::sqrt((column_product(m, 0, 0) + column_product(m, 1, 1) + column_product(m, 2, 2)) / 3.0);
+}
+
+// Rotation, mirror and one common factor, up to the rounding of a composed float matrix.
+bool scales_evenly(const Affine& m) {
+    const double squared = mean_scale(m) * mean_scale(m), tolerance = 1e-4 * squared;
+    for (std::size_t a = 0; a < 3; ++a)
+        for (std::size_t b = a; b < 3; ++b)
+            if (std::abs(column_product(m, a, b) - (a == b ? squared : 0.0)) > tolerance) return false;
+    return true;
+}
+
+struct Rate {
+    double x, y;
+};
+
+// Mean factors of the transform along a chart's u and v.
+Rate uneven_rate(const Mesh& mesh, const MeshCharts& charts, const Chart& chart, const Affine& transform) {
+    double before_x = 0.0, before_y = 0.0, after_x = 0.0, after_y = 0.0;
+    for (std::uint32_t k = chart.first; k < chart.first + chart.count; ++k) {
+        const std::uint32_t t = charts.order[k];
+        const UvTriangle& uv = charts.uv[t];
+        const double determinant = uv_cross(uv);
+        if (determinant == 0.0) continue;
+        const Vec3 p0 = mesh.positions[mesh.triangles[t][0]], p1 = mesh.positions[mesh.triangles[t][1]],
+                   p2 = mesh.positions[mesh.triangles[t][2]];
+        const double u1 = double{uv[1].x} - uv[0].x, v1 = double{uv[1].y} - uv[0].y;
+        const double u2 = double{uv[2].x} - uv[0].x, v2 = double{uv[2].y} - uv[0].y;
+        Vec3d du, dv;
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double e1 = double{p1[c]} - p0[c], e2 = double{p2[c]} - p0[c];
+            du[c] = (e1 * v2 - e2 * v1) / determinant;
+            dv[c] = (e2 * u1 - e1 * u2) / determinant;
+        }
+        const double weight = std::abs(determinant);
+        before_x += weight * (du[0] * du[0] + du[1] * du[1] + du[2] * du[2]);
+        before_y += weight * (dv[0] * dv[0] + dv[1] * dv[1] + dv[2] * dv[2]);
+        after_x += weight * stretched(transform, du);
+        after_y += weight * stretched(transform, dv);
+    }
+    const double fallback = mean_scale(transform);
+    return {before_x > 0.0 ? std::sqrt(after_x / before_x) : fallback,
+            before_y > 0.0 ? std::sqrt(after_y / before_y) : fallback};
+}
+
+// ---- Sizes ----------------------------------------------------------------------------------------------------------
+
+// A chart drawn in a box of so many texels.
+struct Drawing {
+    std::uint32_t mesh, chart, width, height;
+    bool operator==(const Drawing&) const = default;
+    bool operator<(const Drawing& o) const {
+        return std::tie(mesh, chart, width, height) < std::tie(o.mesh, o.chart, o.width, o.height);
+    }
+};
+
+std::uint32_t texel_steps(double length, double density, std::uint32_t limit, bool& clamped) {
+    const double steps = std::max(1.0, std::floor(length * density + 0.5));
+    if (steps <= limit - 1) return static_cast<std::uint32_t>(steps);
+    clamped = true;
+    return limit - 1;
+}
+
+Drawing drawing_of(const ChartSet& charts, const ChartInstance& c, double density, SizeLimit limit, bool& clamped) {
+    const Chart& chart = charts.meshes[c.mesh].charts[c.chart];
+    const double size_x = double{chart.max.x} - chart.min.x, size_y = double{chart.max.y} - chart.min.y;
+    return {c.mesh, c.chart, texel_steps(size_x * c.rate_x, density, limit.width, clamped) + 1,
+            texel_steps(size_y * c.rate_y, density, limit.height, clamped) + 1};
+}
+
+ChartMask draw(const ChartSet& charts, const Drawing& d) {
+    const MeshCharts& mesh = charts.meshes[d.mesh];
+    const Chart& chart = mesh.charts[d.chart];
+    return make_mask(std::span(mesh.order).subspan(chart.first, chart.count), mesh.uv, chart.min, chart.max, d.width,
+                     d.height);
+}
+
+}  // namespace
+
+std::vector<ChartInstance> chart_instances(const Scene& scene, const ChartSet& charts) {
+    std::vector<ChartInstance> out;
+    for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
+        const Instance& instance = scene.instances[i];
+        if (instance.node_class != NodeClass::lightmap) continue;
+        const MeshCharts& mesh_charts = charts.meshes[instance.mesh];
+        const bool even = scales_evenly(instance.transform);
+        const double scale = mean_scale(instance.transform);
+        for (std::uint32_t c = 0; c < mesh_charts.charts.size(); ++c) {
+            const Rate rate = even ? Rate{scale, scale}
+                                   : uneven_rate(*scene.meshes[instance.mesh], mesh_charts, mesh_charts.charts[c],
+                                                 instance.transform);
+            out.push_back({i, instance.mesh, c, rate.x * instance.density_scale, rate.y * instance.density_scale});
+        }
+    }
+    return out;
+}
+
+std::optional<SizedCharts> size_charts(const ChartSet& charts, const std::vector<ChartInstance>& instances,
+                                       double texels_per_metre, SizeLimit limit, Context& context) {
+    SizedCharts sized;
+    std::vector<Drawing> wanted;
+    wanted.reserve(instances.size());
+    for (const ChartInstance& c : instances) {
+        bool clamped = false;
+        wanted.push_back(drawing_of(charts, c, texels_per_metre, limit, clamped));
+        sized.clamped += clamped ? 1 : 0;
+    }
+    std::vector<Drawing> drawings = wanted;
+    std::sort(drawings.begin(), drawings.end());
+    drawings.erase(std::unique(drawings.begin(), drawings.end()), drawings.end());
+
+    sized.masks.resize(drawings.size());
+    const bool done = parallel_for(context, drawings.size(), 64, [&](const ChunkRange& range) {
+        for (std::size_t i = range.begin; i < range.end; ++i) sized.masks[i] = draw(charts, drawings[i]);
+    });
+    if (!done) return std::nullopt;
+    sized.mask_of.reserve(instances.size());
+    for (const Drawing& d : wanted) {
+        const auto it = std::lower_bound(drawings.begin(), drawings.end(), d);
+        sized.mask_of.push_back(static_cast<std::uint32_t>(it - drawings.begin()));
+        sized.used += sized.masks[sized.mask_of.back()].used;
+    }
+    return sized;
+}
+
+double texels_at_unit_density(const ChartSet& charts, const std::vector<ChartInstance>& instances) {
+    double sum = 0.0;
+    std::vector<std::vector<double>> areas(charts.meshes.size());  // per mesh and chart
+    for (const ChartInstance& c : instances) {
+        const MeshCharts& mesh = charts.meshes[c.mesh];
+        if (areas[c.mesh].empty()) {
+            areas[c.mesh].resize(mesh.charts.size());
+            for (std::size_t k = 0; k < mesh.charts.size(); ++k)
+                for (std::uint32_t i = 0; i < mesh.charts[k].count; ++i)
+                    areas[c.mesh][k] += 0.5 * std::abs(uv_cross(mesh.uv[mesh.order[mesh.charts[k].first + i]]));
+        }
+        sum += areas[c.mesh][c.chart] * c.rate_x * c.rate_y;
+    }
+    return sum;
+}
+
+Result<double> solve_density(const ChartSet& charts, const std::vector<ChartInstance>& instances, double budget,
+                             SizeLimit limit, Context& context) {
+    const double unit = texels_at_unit_density(charts, instances);
+    if (!(unit > 0.0)) return 1.0;
+    const double target = std::max(budget, 2.0 * 4.0 * static_cast<double>(instances.size()));
+    // Borders only add to the area, up to the rounding of sizes: twice its density is above the answer.
+    double low = 0.0, high = 2.0 * std::sqrt(target / unit), density = 0.25 * high;
+    for (int step = 0; step < 24; ++step) {
+        const std::optional<SizedCharts> sized = size_charts(charts, instances, density, limit, context);
+        if (!sized) return Error{ErrorCode::cancelled, "cancelled", "", ""};
+        const double used = static_cast<double>(sized->used);
+        if (std::abs(used - target) <= 0.005 * target) break;
+        (used < target ? low : high) = density;
+        // Texels grow about as the square of the density; keep the guess well inside the bracket.
+        const double guess = density * std::sqrt(target / used);
+        const double margin = 0.02 * (high - low);
+        density = std::clamp(guess, low + margin, high - margin);
+    }
+    return density;
+}
+
+}  // namespace lumel

@@ -1,0 +1,48 @@
+// How many texels each chart of each instance gets, and the density that meets a texel budget.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "chart/chart_mask.h"
+#include "chart/chart_set.h"
+
+namespace lumel {
+
+// One chart of one lightmap instance.
+struct ChartInstance {
+    std::uint32_t instance = 0, mesh = 0, chart = 0;
+    double rate_x = 1.0, rate_y = 1.0;  // metres of world per chart unit along u and v, times Instance::density_scale
+};
+
+// All of them, by instance, then chart. A transform that scales evenly gives its factor to all charts; an uneven one
+// gives each chart the root mean square of the factors along its own u and v.
+std::vector<ChartInstance> chart_instances(const Scene& scene, const ChartSet& charts);
+
+// Charts drawn at one density. Charts that look alike share a mask.
+struct SizedCharts {
+    std::vector<ChartMask> masks;
+    std::vector<std::uint32_t> mask_of;  // beside the chart instances
+    std::uint64_t used = 0;              // texels of all instances
+    std::uint64_t clamped = 0;           // charts that the largest size cut down
+};
+
+struct SizeLimit {
+    std::uint32_t width = 0, height = 0;  // of a mask, texels, at least 2
+};
+
+// The box of a chart becomes a whole number of texel steps, the nearest to its size at this density but at least one: a
+// chart has 2 x 2 texels or more. Returns nothing where the context was cancelled.
+std::optional<SizedCharts> size_charts(const ChartSet& charts, const std::vector<ChartInstance>& instances,
+                                       double texels_per_metre, SizeLimit limit, Context& context);
+
+// The density whose masks hold `budget` texels within half a percent, or as near as whole texels come. Where 2 x 2
+// texels for every chart would eat more than half of the budget, twice that floor is taken as the budget.
+Result<double> solve_density(const ChartSet& charts, const std::vector<ChartInstance>& instances, double budget,
+                             SizeLimit limit, Context& context);
+
+// World area over all chart instances, with the rates applied: texels at one texel per metre.
+double texels_at_unit_density(const ChartSet& charts, const std::vector<ChartInstance>& instances);
+
+}  // namespace lumel
