@@ -1,3 +1,4 @@
+// Numbers that more than one module needs.
 #pragma once
 
 namespace lumel {
