@@ -23,7 +23,7 @@ public:
 
     bool read(char out[], int count) override {
         const auto wanted = static_cast<std::size_t>(std::max(count, 0));
-        // caught in decode_exr, like all that OpenEXR throws
+        // caught in with_exr, like all that OpenEXR throws
         if (at_ > bytes_.size() || bytes_.size() - at_ < wanted) throw std::runtime_error("the file ends early");
         std::memcpy(out, bytes_.data() + at_, wanted);
         at_ += wanted;
