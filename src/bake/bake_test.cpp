@@ -1,0 +1,180 @@
+#include <gtest/gtest.h>
+
+#include "base/hash.h"
+#include "chart/chart_set.h"
+#include "light/light_set.h"
+#include "lumel/bake.h"
+#include "path/path_integrator.h"
+#include "post/lightmap.h"
+#include "support/scene_builder.h"
+#include "texel/texel_buffer.h"
+#include "trace/tracer.h"
+
+namespace lumel {
+namespace {
+
+// A room with one side open to the sky, a box and a ball of few facets in it, a lamp, a sun and a point light: every kind
+// of path.
+Scene room() {
+    test::SceneBuilder b;
+    const auto white = b.material({0.8f, 0.8f, 0.7f});
+    const auto red = b.material({0.7f, 0.1f, 0.1f}, {}, true);
+    const auto lamp = b.material({0.1f, 0.1f, 0.1f}, {20, 15, 10});
+    b.object("room", white, [](Mesh& m) {
+        test::add_quad(m, {0, 0, 2}, {3, 0, 0}, {0, 0, -2});
+        test::add_quad(m, {0, 0, 0}, {3, 0, 0}, {0, 2, 0});
+        test::add_quad(m, {0, 0, 2}, {0, 0, -2}, {0, 2, 0});
+    });
+    const auto box = b.object("box", red, [](Mesh& m) { test::add_box(m, {-0.3f, 0, -0.3f}, {0.3f, 0.6f, 0.3f}, false); },
+                              Affine{{Vec3{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {1, 0, 1}});
+    b.instance("box 2", b.scene().instances[box].mesh, Affine{{Vec3{-1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {2.2f, 0, 0.8f}});
+    b.object("lamp", lamp, [](Mesh& m) { test::add_quad(m, {1, 1.9f, 1}, {0.4f, 0, 0}, {0, 0, 0.4f}); });
+    Light& sun = b.light(LightShape::sun);
+    sun.direction = normalize(Vec3{-0.5f, -1.0f, -0.4f});
+    sun.intensity = {5, 4, 3};
+    sun.angular_diameter = 0.1f;
+    Light& point = b.light(LightShape::point);
+    point.position = {2.5f, 1.5f, 1.5f};
+    point.intensity = {1, 2, 3};
+    b.scene().sky.color = {0.4f, 0.6f, 1.0f};
+    return b.build();
+}
+
+BakeOptions small_options() {
+    BakeOptions options;
+    options.texels_per_metre = 8;
+    options.samples = 100;  // not a multiple of the wavefront
+    options.bounces = 6;
+    return options;
+}
+
+void hash_sums(Hasher& hasher, const RadianceSums& sums) {
+    hasher.array(std::span(std::as_const(sums.layers)));
+    hasher.array(std::span(std::as_const(sums.variance)));
+    hasher.array(std::span(std::as_const(sums.bent_normal)));
+    hasher.array(std::span(std::as_const(sums.sky_visibility)));
+    hasher.array(std::span(std::as_const(sums.ambient_occlusion)));
+    hasher.array(std::span(std::as_const(sums.count)));
+}
+
+std::string bake_hash(unsigned threads, const BakeOptions& options, BakeReport* report = nullptr) {
+    Context context(threads);
+    Hasher hasher;
+    BakeSink sink;
+    sink.layout = [&](const WorldGeometry&, const ChartSet&, const Atlas& atlas) {
+        for (const ChartPlacement& p : atlas.placements) hasher.pod(p.page).pod(p.offset.x).pod(p.offset.y);
+        return success();
+    };
+    sink.page = [&](const Lightmap& map) {
+        hash_sums(hasher, map.texels);
+        return success();
+    };
+    const Result<BakeReport> result = bake(room(), options, sink, context);
+    EXPECT_TRUE(result.ok()) << (result.ok() ? "" : result.error().text());
+    if (report && result.ok()) *report = *result;
+    return hasher.finish().hex();
+}
+
+TEST(Bake, TheSameBitsForOneTwoAndEightThreads) {
+    BakeReport report;
+    const std::string one = bake_hash(1, small_options(), &report);
+    ASSERT_GT(report.texels, 500u);
+    ASSERT_GT(report.mean_irradiance[0], 0.1);
+    EXPECT_EQ(one, bake_hash(2, small_options()));
+    EXPECT_EQ(one, bake_hash(8, small_options()));
+    BakeOptions other = small_options();
+    other.seed = 2;
+    EXPECT_NE(one, bake_hash(2, other)) << "the hash sees nothing";
+}
+
+TEST(Bake, TheSameBitsForTheSeedsStopRule) {
+    BakeOptions options = small_options();
+    options.samples = 640;
+    options.stop = StopRule::flux;
+    BakeReport report;
+    EXPECT_EQ(bake_hash(1, options, &report), bake_hash(2, options));
+    EXPECT_LT(report.samples, report.texels * 640) << "no texel stopped early";
+    EXPECT_GE(report.samples, report.texels * 64) << "the rule is looked at no sooner than at 10 %";
+}
+
+TEST(Bake, AnySplitOfTheTexelsGivesTheSameBits) {
+    Context context(2);
+    const Scene scene = room();
+    const WorldGeometry geometry = flatten(scene, context).value();
+    const SurfaceReader surfaces(scene, geometry);
+    const LightSet lights(scene, geometry, surfaces);
+    const auto tracer = make_embree_tracer(geometry, surfaces, context).value();
+    const Transport transport{scene, geometry, surfaces, lights, *tracer};
+    ChartOptions chart_options;
+    chart_options.texels_per_metre = 8;
+    const ChartSet charts = make_charts(scene, geometry, chart_options, context).value();
+    const Atlas atlas = make_atlas(scene, geometry, charts, chart_options, context).value();
+    const auto by_page = triangles_by_page(scene, geometry, charts, atlas);
+    const TexelBuffer texels = rasterize_page(scene, geometry, charts, atlas, 0, by_page[0], context).value();
+    PathOptions path;
+    path.samples = 64;
+    path.bounces = 4;
+
+    const auto hash_of = [&](const RadianceSums& sums) {
+        Hasher hasher;
+        hash_sums(hasher, sums);
+        return hasher.finish().hex();
+    };
+    const RadianceSums whole =
+        gather_page(texels, charts, atlas, transport, path, 0, texels.size(), context).value();
+    for (const std::size_t shards : {3u, 7u}) {
+        RadianceSums merged;
+        merged.resize(texels.size());
+        for (std::size_t s = 0; s < shards; ++s) {
+            const std::size_t first = texels.size() * s / shards, last = texels.size() * (s + 1) / shards;
+            const RadianceSums part =
+                gather_page(texels, charts, atlas, transport, path, first, last - first, context).value();
+            for (std::size_t i = first; i < last; ++i) {
+                merged.layers[i] = part.layers[i];
+                merged.variance[i] = part.variance[i];
+                merged.bent_normal[i] = part.bent_normal[i];
+                merged.sky_visibility[i] = part.sky_visibility[i];
+                merged.ambient_occlusion[i] = part.ambient_occlusion[i];
+                merged.count[i] = part.count[i];
+            }
+        }
+        EXPECT_EQ(hash_of(whole), hash_of(merged)) << shards << " shards";
+    }
+}
+
+TEST(Bake, NoLightIsAnErrorThatNamesTheRemedy) {
+    test::SceneBuilder b;
+    const auto white = b.material({0.8f, 0.8f, 0.8f});
+    b.object("floor", white, [](Mesh& m) { test::add_quad(m, {0, 0, 0}, {0, 0, 1}, {1, 0, 0}); });
+    Context context(1);
+    BakeSink sink{[](const auto&, const auto&, const auto&) { return success(); }, [](const auto&) { return success(); }};
+    const auto result = bake(b.build(), {}, sink, context);
+    ASSERT_FALSE(result.ok());
+    EXPECT_NE(result.error().text().find("--sky"), std::string::npos);
+}
+
+TEST(Bake, TooLittleMemoryIsAnErrorThatSaysHowMuchIsNeeded) {
+    BakeOptions options = small_options();
+    options.max_memory_bytes = 1 << 20;
+    Context context(1);
+    BakeSink sink{[](const auto&, const auto&, const auto&) { return success(); }, [](const auto&) { return success(); }};
+    const auto result = bake(room(), options, sink, context);
+    ASSERT_FALSE(result.ok());
+    EXPECT_EQ(result.error().code, ErrorCode::out_of_memory);
+    EXPECT_NE(result.error().message.find("needs about"), std::string::npos);
+}
+
+TEST(Bake, CancelledBakesStopAndSaySo) {
+    Context context(2);
+    BakeSink sink{[&](const auto&, const auto&, const auto&) {
+                      context.request_cancel();
+                      return success();
+                  },
+                  [](const auto&) { return success(); }};
+    const auto result = bake(room(), small_options(), sink, context);
+    ASSERT_FALSE(result.ok());
+    EXPECT_EQ(result.error().code, ErrorCode::cancelled);
+}
+
+}  // namespace
+}  // namespace lumel
