@@ -16,7 +16,7 @@ constexpr std::uint64_t kMaxBufferFile = std::uint64_t{8} << 30;
 constexpr std::uint32_t kGlbMagic = 0x46546c67, kJsonChunk = 0x4e4f534a, kBinaryChunk = 0x004e4942;
 
 // What may stand in extensionsRequired: read, harmless to a diffuse bake, or with a fallback that is used instead.
-constexpr std::array<std::string_view, 31> kKnownExtensions{"KHR_lights_punctual",
+constexpr std::array<std::string_view, 30> kKnownExtensions{"KHR_lights_punctual",
                                                             "KHR_texture_transform",
                                                             "KHR_materials_emissive_strength",
                                                             "KHR_mesh_quantization",
@@ -38,7 +38,6 @@ constexpr std::array<std::string_view, 31> kKnownExtensions{"KHR_lights_punctual
                                                             "KHR_xmp_json_ld",
                                                             "KHR_xmp",
                                                             "KHR_animation_pointer",
-                                                            "KHR_node_visibility",
                                                             "KHR_texture_basisu",
                                                             "EXT_texture_webp",
                                                             "EXT_texture_avif",
@@ -114,8 +113,7 @@ Status check_required_extensions(const Json& root, const std::string& where) {
     for (const Json& entry : *required) {
         if (!entry.is_string()) return invalid(where, "'extensionsRequired' must hold strings");
         const auto& name = entry.get_ref<const std::string&>();
-        if (std::find(kKnownExtensions.begin(), kKnownExtensions.end(), name) == kKnownExtensions.end())
-            unknown += (unknown.empty() ? "" : ", ") + name;
+        if (!is_known_extension(name)) unknown += (unknown.empty() ? "" : ", ") + name;
     }
     if (unknown.empty()) return success();
     return unsupported(where, "requires extensions that Lumel does not read: " + unknown, remedy_for(unknown));
@@ -218,6 +216,10 @@ private:
 };
 
 }  // namespace
+
+bool is_known_extension(const std::string& name) {
+    return std::find(kKnownExtensions.begin(), kKnownExtensions.end(), name) != kKnownExtensions.end();
+}
 
 void GltfDocumentDeleter::operator()(GltfDocument* document) const { delete document; }
 

@@ -9,6 +9,9 @@ namespace lumel {
 Result<GltfDocumentPtr> read_document(std::vector<std::byte> bytes, const std::filesystem::path& path,
                                       const std::string& where);
 
+// Extensions that Lumel reads, or that are harmless to a diffuse bake, or that come with a fallback.
+bool is_known_extension(const std::string& name);
+
 // The decoded content of a view that carries EXT_meshopt_compression (`extension` is that object).
 struct MeshoptView {
     std::vector<std::byte> bytes;

@@ -1,0 +1,36 @@
+#include "io/node_class.h"
+
+namespace lumel {
+namespace {
+
+// Below a five-hundredth of the scene an object is a few texels at any density that a whole scene is baked with, and
+// charts of single texels serve it worse than a probe. 10 cm keeps cups and books of large scenes in the lightmap.
+constexpr double kSmallShare = 0.002, kSmallMetres = 0.1;
+
+}  // namespace
+
+ClassOfNode classify(const SceneNode& node, const NodeSettings& settings, double diagonal, double scene_diagonal) {
+    if (settings.node_class)
+        return {*settings.node_class, *settings.node_class == NodeClass::lightmap ? "" : "by the sidecar"};
+    if (node.lightmap) {
+        if (*node.lightmap) return {};
+        return {NodeClass::volume, "extras.lightmap is false"};
+    }
+    if (node.skinned) return {NodeClass::probe, "skinned"};
+    if (node.animated) return {NodeClass::probe, "animated"};
+    if (diagonal < kSmallShare * scene_diagonal && diagonal < kSmallMetres) return {NodeClass::probe, "small"};
+    return {};
+}
+
+const char* class_name(NodeClass node_class) {
+    switch (node_class) {
+        case NodeClass::lightmap: return "lightmap";
+        case NodeClass::volume: return "volume";
+        case NodeClass::probe: return "probe";
+        case NodeClass::occluder: return "occluder";
+        case NodeClass::ignored: return "ignored";
+    }
+    return "lightmap";
+}
+
+}  // namespace lumel
