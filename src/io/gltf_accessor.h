@@ -24,6 +24,8 @@ public:
     // c < components.
     [[nodiscard]] float number(std::uint64_t i, std::uint32_t c) const;
     [[nodiscard]] std::uint32_t index(std::uint64_t i) const;
+    // False for a default-constructed view: an attribute that the primitive does not have.
+    [[nodiscard]] bool present() const { return count > 0; }
     // True where opening it took memory of its own: sparse, or without a view.
     [[nodiscard]] bool owns_storage() const { return !owned_.empty(); }
     // Copies element i, tightly packed.

@@ -8,22 +8,22 @@
 namespace lumel {
 namespace {
 
-Result<std::optional<AccessorView>> open_part(const GltfDocument& document, const Json& attributes, const char* key,
-                                              std::uint32_t components, std::optional<std::uint64_t>& count,
-                                              const std::string& where) {
+Result<AccessorView> open_part(const GltfDocument& document, const Json& attributes, const char* key,
+                               std::uint32_t components, std::optional<std::uint64_t>& count,
+                               const std::string& where) {
     LUMEL_TRY(const std::optional<std::uint64_t> accessor, optional_count(attributes, key, where));
-    if (!accessor) return std::optional<AccessorView>{};
+    if (!accessor) return AccessorView{};
     LUMEL_TRY(AccessorView view, open_accessor(document, *accessor));
     if (view.components != components)
         return invalid(where, std::string(key) + " must have " + std::to_string(components) + " components");
     if (count && *count != view.count) return invalid(where, "its attributes have different numbers of instances");
     count = view.count;
-    return std::optional<AccessorView>(std::move(view));
+    return view;
 }
 
 template <std::size_t N>
-std::array<double, N> read(const std::optional<AccessorView>& view, std::uint64_t i, std::array<double, N> fallback) {
-    for (std::uint32_t c = 0; view && c < N; ++c) fallback[c] = double{view->number(i, c)};
+std::array<double, N> read(const AccessorView& view, std::uint64_t i, std::array<double, N> fallback) {
+    for (std::uint32_t c = 0; view.present() && c < N; ++c) fallback[c] = double{view.number(i, c)};
     return fallback;
 }
 

@@ -13,8 +13,7 @@ namespace {
 
 // The attributes of one primitive that a bake needs.
 struct Attributes {
-    AccessorView position;
-    std::optional<AccessorView> normal, uv0, uv1, color;
+    AccessorView position, normal, uv0, uv1, color;  // all but the position may be absent
 };
 
 Vec2 vec2(const AccessorView& view, std::uint64_t i) { return {view.number(i, 0), view.number(i, 1)}; }
@@ -25,36 +24,33 @@ Vec4 vec4(const AccessorView& view, std::uint64_t i) {
     return {view.number(i, 0), view.number(i, 1), view.number(i, 2), view.components == 4 ? view.number(i, 3) : 1.0f};
 }
 
-// Opens attribute `key` where the primitive has it.
-Result<std::optional<AccessorView>> open_attribute(const GltfDocument& document, const Json& attributes,
-                                                   const char* key, std::uint32_t least, std::uint32_t most,
-                                                   const std::string& where) {
+// Opens attribute `key`; not present() where the primitive does not have it.
+Result<AccessorView> open_attribute(const GltfDocument& document, const Json& attributes, const char* key,
+                                    std::uint32_t least, std::uint32_t most, const std::string& where) {
     LUMEL_TRY(const std::optional<std::uint64_t> accessor, optional_count(attributes, key, where));
-    if (!accessor) return std::optional<AccessorView>{};
+    if (!accessor) return AccessorView{};
     LUMEL_TRY(AccessorView view, open_accessor(document, *accessor));
     if (view.components < least || view.components > most || view.component == Component::uint32)
         return invalid(
             where, std::string("accessor ") + std::to_string(*accessor) + " is of no type that " + key + " may have");
-    return std::optional<AccessorView>(std::move(view));
+    return view;
 }
 
 Result<Attributes> open_attributes(const GltfDocument& document, const Json& attributes, ExpansionBudget& budget,
                                    const std::string& where) {
-    LUMEL_TRY(auto position, open_attribute(document, attributes, "POSITION", 3, 3, where));
-    Attributes out{std::move(*position), {}, {}, {}, {}};
+    Attributes out;
+    LUMEL_TRY(out.position, open_attribute(document, attributes, "POSITION", 3, 3, where));
     LUMEL_TRY(out.normal, open_attribute(document, attributes, "NORMAL", 3, 3, where));
     LUMEL_TRY(out.uv0, open_attribute(document, attributes, "TEXCOORD_0", 2, 2, where));
     LUMEL_TRY(out.uv1, open_attribute(document, attributes, "TEXCOORD_1", 2, 2, where));
     LUMEL_TRY(out.color, open_attribute(document, attributes, "COLOR_0", 3, 4, where));
     // Colours of integers are normalised by definition; some exporters forget to say so.
-    if (out.color && out.color->component != Component::float32) out.color->normalized = true;
-    for (const auto* attribute : {&out.normal, &out.uv0, &out.uv1, &out.color}) {
-        if (!*attribute) continue;
-        if ((*attribute)->count != out.position.count)
+    if (out.color.component != Component::float32) out.color.normalized = true;
+    for (const AccessorView* attribute : {&out.position, &out.normal, &out.uv0, &out.uv1, &out.color}) {
+        if (attribute->present() && attribute->count != out.position.count)
             return invalid(where, "its attributes have different numbers of elements");
-        if ((*attribute)->owns_storage()) LUMEL_TRY_STATUS(budget.take((*attribute)->count, where));
+        if (attribute->owns_storage()) LUMEL_TRY_STATUS(budget.take(attribute->count, where));
     }
-    if (out.position.owns_storage()) LUMEL_TRY_STATUS(budget.take(out.position.count, where));
     return out;
 }
 
@@ -115,11 +111,11 @@ std::vector<std::uint32_t> drop_unused(std::vector<Triangle>& triangles, std::ui
 
 // Zeros (or white) where earlier primitives had no such attribute and this one has, and the other way round.
 template <class T, class Read>
-void append(std::vector<T>& to, std::size_t before, std::size_t added, const std::optional<AccessorView>& view,
-            T absent, Read&& read) {
-    if (!view && to.empty()) return;
+void append(std::vector<T>& to, std::size_t before, std::size_t added, const AccessorView& view, T absent,
+            Read&& read) {
+    if (!view.present() && to.empty()) return;
     to.resize(before, absent);
-    for (std::size_t v = 0; v < added; ++v) to.push_back(view ? read(v) : absent);
+    for (std::size_t v = 0; v < added; ++v) to.push_back(view.present() ? read(v) : absent);
 }
 
 class MeshReader {
@@ -193,8 +189,8 @@ private:
 
     Status add(const Attributes& open, std::vector<Triangle> triangles, std::uint32_t material, std::uint32_t index,
                const std::string& name) {
-        PrimitiveSource source{index, {}, !open.normal};
-        source.vertex = open.normal ? drop_unused(triangles, open.position.count) : unweld(triangles);
+        PrimitiveSource source{index, {}, !open.normal.present()};
+        source.vertex = open.normal.present() ? drop_unused(triangles, open.position.count) : unweld(triangles);
         const std::size_t count = source.vertex.empty() ? open.position.count : source.vertex.size();
         LUMEL_TRY_STATUS(budget_.take(count, document_.where + ": " + name));
         if (mesh_.positions.size() + count >= kNone)
@@ -208,7 +204,7 @@ private:
                 {t[0] + primitive.first_vertex, t[1] + primitive.first_vertex, t[2] + primitive.first_vertex});
         append_vertices(open, source, count);
         LUMEL_TRY_STATUS(check_finite(primitive, source, name));
-        finish_normals(primitive, open.normal.has_value(), name);
+        finish_normals(primitive, open.normal.present(), name);
         mesh_.primitives.push_back(primitive);
         source_.primitives.push_back(std::move(source));
         return success();
@@ -219,12 +215,12 @@ private:
         const auto element = [&](std::size_t v) { return source.element(static_cast<std::uint32_t>(v)); };
         for (std::size_t v = 0; v < count; ++v) {
             mesh_.positions.push_back(vec3(open.position, element(v)));
-            mesh_.normals.push_back(open.normal ? vec3(*open.normal, element(v)) : Vec3{});
+            mesh_.normals.push_back(open.normal.present() ? vec3(open.normal, element(v)) : Vec3{});
         }
-        append(mesh_.uv0, before, count, open.uv0, Vec2{}, [&](std::size_t v) { return vec2(*open.uv0, element(v)); });
-        append(mesh_.uv1, before, count, open.uv1, Vec2{}, [&](std::size_t v) { return vec2(*open.uv1, element(v)); });
+        append(mesh_.uv0, before, count, open.uv0, Vec2{}, [&](std::size_t v) { return vec2(open.uv0, element(v)); });
+        append(mesh_.uv1, before, count, open.uv1, Vec2{}, [&](std::size_t v) { return vec2(open.uv1, element(v)); });
         append(mesh_.colors, before, count, open.color, Vec4{1, 1, 1, 1}, [&](std::size_t v) {
-            const Vec4 c = vec4(*open.color, element(v));
+            const Vec4 c = vec4(open.color, element(v));
             return Vec4{std::max(c.x, 0.0f), std::max(c.y, 0.0f), std::max(c.z, 0.0f), std::max(c.w, 0.0f)};
         });
     }
