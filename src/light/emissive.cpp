@@ -20,7 +20,7 @@ int grid_size(const Scene& scene, const WorldGeometry& geometry, const WorldTria
     const float stretch = ref.transform[0] * ref.transform[4] - ref.transform[1] * ref.transform[3];
     const float texels = 0.5f * std::fabs(cross(e1, e2) * stretch) * static_cast<float>(texture.width) *
                          static_cast<float>(texture.height);
-    return static_cast<int>(std::clamp(0.25f * std::sqrt(texels), 4.0f, 32.0f));
+    return static_cast<int>(std::clamp(0.5f * std::sqrt(texels), 4.0f, 48.0f));
 }
 
 }  // namespace

@@ -95,21 +95,20 @@ Vec3 mean_radiance(const Pixels& pixels, const std::vector<std::size_t>& set, co
 // The disc of radiance above its surroundings as a directional light.
 Light make_sun(const Pixels& pixels, const Region& region, Vec3 background, const SolidAngles& solid_angle) {
     std::array<double, 3> irradiance{}, direction{};
-    double weight = 0.0, squares = 0.0;
+    double weight = 0.0, peak = 0.0;
     for (const std::size_t i : region.inside) {
         const double w = solid_angle(i);
         const Vec3 excess = max(pixels.map.radiance[i] - background, Vec3{}), d = pixels.direction(i);
         const double s = strength(excess);
         for (std::size_t k = 0; k < 3; ++k) irradiance[k] += w * excess[k], direction[k] += w * s * d[k];
         weight += w * s;
-        squares += w * s * s;
+        peak = std::max(peak, s);
     }
     const auto vector = [](const std::array<double, 3>& v) {
         return Vec3{static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
     };
-    // The solid angle of the uniform disc with the same first two moments of radiance: a blurred edge counts by its
-    // weight.
-    const double disc = weight * weight / squares;
+    // A uniform disc of the peak's radiance: pixels that the edge cuts, or blur dims, count by their share.
+    const double disc = weight / peak;
     Light sun;
     sun.name = "sun of the sky map";
     sun.shape = LightShape::sun;
