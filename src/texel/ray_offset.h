@@ -1,4 +1,5 @@
 // Ray origins that provably lie off the surface they start on, and the smooth position against the shadow terminator.
+// The error bounds are derived in docs/ray-offset.md.
 #pragma once
 
 #include "lumel/vec.h"
@@ -6,16 +7,22 @@
 
 namespace lumel {
 
-// How far the computed point P = sum b_i p_i may lie from the triangle's plane, along unit normal n:
-// d = gamma(7) sum_c |n_c| sum_i |b_i| |p_i,c| (algorithms: vertex error bound), in metres.
+// How far the computed point P = sum b_i p_i may lie from the triangle's plane, along unit normal n, in metres:
+// gamma(7) sum_c |n_c| sum_i |b_i| |p_i,c|. Barycentrics in [0, 1].
 float plane_error(const WorldGeometry& geometry, std::uint32_t triangle, float b1, float b2, Vec3 normal);
 
-// P + d * side_normal, rounded away from the plane per axis. `side_normal` is the geometric normal of the side that the
-// ray leaves. A ray from here into that side does not meet the triangle again.
+// How far off the triangle's plane a point may seem to lie to a ray tracer that works in single precision, in metres:
+// u E + 3 gamma(8) E_x E_y E_z / A, where E are the edges of the triangle's bounding box and A is its area. Slivers
+// thinner than about 1/1000 of their length get the bound of one of that shape: see Ray::skip.
+float tracer_error(const WorldGeometry& geometry, std::uint32_t triangle);
+
+// P + (plane_error + tracer_error) * side_normal, rounded away from the plane per axis. `side_normal` is the geometric
+// normal of the side that the ray leaves. A ray from here into that side does not meet the triangle again; occluders
+// nearer than twice the offset may be missed.
 Vec3 offset_origin(const WorldGeometry& geometry, std::uint32_t triangle, float b1, float b2, Vec3 side_normal);
 
-// The smooth position that only moves outward (Hanika 2021): P - sum_i b_i min(0, (P - V_i).n_i) n_i, for the front side;
-// equal to P on flat triangles. Zero facets on convex low-poly meshes, no move on concave ones.
+// The smooth position that only moves outward: P - sum_i b_i min(0, (P - V_i).n_i) n_i, for the front side; equal to P
+// on flat triangles. Rounds off convex low-poly meshes, leaves concave ones where they are.
 Vec3 smooth_position(const WorldGeometry& geometry, std::uint32_t triangle, float b1, float b2, bool back_side);
 
 }  // namespace lumel

@@ -1,0 +1,66 @@
+// Based on: Pharr, Jakob, Humphreys, "Physically Based Rendering" 4th ed., section 6.8 (bounds of rounding errors,
+// points rounded away from the surface); Woop, Benthin, Wald 2013, "Watertight Ray/Triangle Intersection" (edges
+// relative to the ray's origin); Hanika 2021, "Hacking the Shadow Terminator", Ray Tracing Gems II, chapter 4.
+// Different here: the tracer's own error is part of the bound. Without it, large triangles near the origin of the
+// coordinates shade themselves.
+#include "texel/ray_offset.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "math/constants.h"
+
+namespace lumel {
+namespace {
+
+Vec3 abs(Vec3 v) { return {std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)}; }
+
+// fl(x + step), then one float further: not nearer than the exact sum.
+float add_away(float x, float step) {
+    const float sum = x + step;
+    if (step == 0.0f) return sum;
+    return std::nextafterf(sum, step > 0.0f ? HUGE_VALF : -HUGE_VALF);
+}
+
+}  // namespace
+
+float plane_error(const WorldGeometry& geometry, std::uint32_t triangle, float b1, float b2, Vec3 normal) {
+    const auto [p0, p1, p2] = geometry.corners(triangle);
+    const Vec3 magnitude = abs(p0) * std::fabs(1.0f - b1 - b2) + abs(p1) * std::fabs(b1) + abs(p2) * std::fabs(b2);
+    return gamma_bound(7) * dot(abs(normal), magnitude);
+}
+
+float tracer_error(const WorldGeometry& geometry, std::uint32_t triangle) {
+    const auto [p0, p1, p2] = geometry.corners(triangle);
+    const Vec3 extent = max(max(p0, p1), p2) - min(min(p0, p1), p2);
+    const float longest = max_component(extent);
+    constexpr float kThinnest = 0x1p-11f;  // area per squared length
+    const float area = std::max(0.5f * length(cross(p1 - p0, p2 - p0)), kThinnest * longest * longest);
+    if (!(area > 0.0f)) return 0.0f;
+    return kFloatEpsilon * longest + 3.0f * gamma_bound(8) * (extent.x * extent.y) * (extent.z / area);
+}
+
+Vec3 offset_origin(const WorldGeometry& geometry, std::uint32_t triangle, float b1, float b2, Vec3 side_normal) {
+    const Vec3 p = geometry.position(triangle, b1, b2);
+    const float d = plane_error(geometry, triangle, b1, b2, side_normal) + tracer_error(geometry, triangle);
+    return {add_away(p.x, d * side_normal.x), add_away(p.y, d * side_normal.y), add_away(p.z, d * side_normal.z)};
+}
+
+Vec3 smooth_position(const WorldGeometry& geometry, std::uint32_t triangle, float b1, float b2, bool back_side) {
+    const Vec3 p = geometry.position(triangle, b1, b2);
+    const WorldTriangle& t = geometry.triangles[triangle];
+    if ((t.flags & kCurved) == 0) return p;
+    const float side = back_side ? -1.0f : 1.0f;
+    const Vec3 face_normal = geometry.geometric_normal(triangle) * side;
+    const std::array<float, 3> weights{1.0f - b1 - b2, b1, b2};
+    Vec3 move{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Vec3 n = geometry.normals[t.vertices[i]] * side;
+        const float height = dot(p - geometry.positions[t.vertices[i]], n);  // below the tangent plane: negative
+        // A normal that points behind the face would move the point through it.
+        if (height < 0.0f && dot(n, face_normal) > 0.0f) move -= n * (weights[i] * height);
+    }
+    return p + move;
+}
+
+}  // namespace lumel
