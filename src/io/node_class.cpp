@@ -3,9 +3,9 @@
 namespace lumel {
 namespace {
 
-// Below a five-hundredth of the scene an object is a few texels at any density that a whole scene is baked with, and
-// charts of single texels serve it worse than a probe. 10 cm keeps cups and books of large scenes in the lightmap.
-constexpr double kSmallShare = 0.002, kSmallMetres = 0.1;
+// Below a thousandth of the scene an object is a few texels at any density that a whole scene is baked with, and
+// charts of single texels serve it worse than a probe. The 10 cm keep the furniture of a large level in the lightmap.
+constexpr double kSmallShare = 0.001, kSmallMetres = 0.1;
 
 }  // namespace
 
