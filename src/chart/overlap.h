@@ -31,12 +31,6 @@ struct OverlapSearch {
 OverlapSearch find_overlaps(std::span<const UvTriangle> triangles, const OverlapTolerance& tolerance,
                             std::size_t max_pairs);
 
-// The tolerance for charts that we made ourselves: the rounding of coordinates up to `extent`, nothing more.
-inline OverlapTolerance rounding_tolerance(double extent) {
-    const double floor = extent * 0x1p-20;
-    return {floor, floor, 0.0};
-}
-
 // Signed double area in double precision.
 inline double uv_cross(const UvTriangle& t) {
     return (double{t[1].x} - t[0].x) * (double{t[2].y} - t[0].y) -

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <deque>
 #include <limits>
 
 #include "base/check.h"
@@ -85,7 +84,6 @@ namespace {
 struct Group {
     std::uint32_t first, last;  // items
     std::uint64_t used;
-    bool alone;  // came off a page that it had to itself
 };
 
 class Packer {
@@ -96,15 +94,12 @@ public:
     }
 
     Packing pages(std::uint32_t max_page) {
-        std::deque<Group> waiting = groups();
+        std::vector<Group> waiting = groups();
         while (!waiting.empty()) {
-            const std::vector<Group> chosen = choose(waiting, max_page);
-            const std::vector<Group> left = fill_page(chosen, page_width(chosen, max_page), max_page);
+            const std::vector<Group> before = waiting;
+            fill_page(waiting, page_width(waiting, max_page), max_page);
             if (cancelled_()) return std::move(result_);
-            if (left.size() == chosen.size())
-                retry_smaller(waiting, left);
-            else
-                waiting.insert(waiting.begin(), left.begin(), left.end());
+            if (waiting.size() == before.size()) spread_first(waiting);
         }
         trim(max_page);
         result_.complete = true;
@@ -112,97 +107,125 @@ public:
     }
 
     Packing single(std::uint32_t width, std::uint32_t height) {
-        const std::deque<Group> all = groups();
         stop_at_first_failure_ = true;
-        result_.complete = fill_page({all.begin(), all.end()}, width, height).empty() && !cancelled_();
-        for (PackPage& page : result_.pages) page.width = width, page.height = height;
+        PageBits bits(width);
+        result_.complete = add_groups(bits, groups(), height).empty() && !cancelled_();
+        if (result_.complete) close_page(width, height);
         return std::move(result_);
     }
 
 private:
     [[nodiscard]] const ChartMask& mask(std::uint32_t item) const { return masks_[items_[item].mask]; }
 
-    [[nodiscard]] std::deque<Group> groups() const {
-        std::deque<Group> out;
+    [[nodiscard]] std::vector<Group> groups() const {
+        std::vector<Group> out;
         for (std::uint32_t i = 0; i < items_.size(); ++i) {
             LUMEL_CHECK(i == 0 || items_[i - 1].group <= items_[i].group, i);
-            if (i == 0 || items_[i - 1].group != items_[i].group) out.push_back({i, i, 0, false});
+            if (i == 0 || items_[i - 1].group != items_[i].group) out.push_back({i, i, 0});
             out.back().last = i + 1;
             out.back().used += mask(i).used;
         }
         return out;
     }
 
-    // Takes groups off the queue until they nearly fill a page.
-    [[nodiscard]] static std::vector<Group> choose(std::deque<Group>& waiting, std::uint32_t max_page) {
-        const double capacity = 0.95 * static_cast<double>(max_page) * max_page;
-        std::vector<Group> chosen;
+    // About square for what is left, or as wide as can be where that is more than one page.
+    [[nodiscard]] std::uint32_t page_width(const std::vector<Group>& waiting, std::uint32_t max_page) const {
         double used = 0.0;
-        const bool first_alone = waiting.front().alone;
-        do {
-            used += static_cast<double>(waiting.front().used);
-            chosen.push_back(waiting.front());
-            waiting.pop_front();
-        } while (!first_alone && !waiting.empty() && used + static_cast<double>(waiting.front().used) <= capacity);
+        std::uint32_t widest = 1;
+        for (const Group& g : waiting) {
+            used += static_cast<double>(g.used);
+            for (std::uint32_t i = g.first; i < g.last; ++i) widest = std::max(widest, mask(i).width);
+        }
+        const double square = std::ceil(std::sqrt(used / 0.9));
+        if (square >= 0.95 * max_page) return max_page;
+        return std::min((std::max(static_cast<std::uint32_t>(square), widest) + 3) / 4 * 4, max_page);
+    }
+
+    // The first group does not even fit an empty page: its charts become groups of their own.
+    void spread_first(std::vector<Group>& waiting) const {
+        const Group g = waiting.front();
+        LUMEL_CHECK(g.last - g.first > 1, "a chart larger than a page", g.first);
+        std::vector<Group> charts;
+        for (std::uint32_t i = g.first; i < g.last; ++i) charts.push_back({i, i + 1, mask(i).used});
+        waiting.erase(waiting.begin());
+        waiting.insert(waiting.begin(), charts.begin(), charts.end());
+    }
+
+    // Makes a page of groups from the queue: a first round of a little more than it can hold, then rounds of what may
+    // fit the room that is left. A page that nothing stays on is dropped.
+    void fill_page(std::vector<Group>& waiting, std::uint32_t width, std::uint32_t height) {
+        constexpr int kRounds = 4;
+        PageBits bits(width);
+        on_page_.clear();
+        const double area = static_cast<double>(width) * height;
+        double room = 1.02 * area;
+        std::vector<Group> refused;  // already came off this page
+        for (int round = 0; round < kRounds && !waiting.empty(); ++round) {
+            const std::vector<Group> chosen = choose(waiting, room, round == 0);
+            const std::vector<Group> left = add_groups(bits, chosen, height);
+            refused.insert(refused.end(), left.begin(), left.end());
+            if (cancelled_() || chosen.empty() || on_page_.empty()) break;
+            room = area;
+            for (const std::uint32_t item : on_page_) room -= static_cast<double>(mask(item).used);
+            room *= 0.95;
+        }
+        waiting.insert(waiting.end(), refused.begin(), refused.end());
+        std::sort(waiting.begin(), waiting.end(), [](const Group& a, const Group& b) { return a.first < b.first; });
+        if (!on_page_.empty()) close_page(width, 0);
+    }
+
+    // Takes groups out of the queue, in order, each that still has room; the very first one in any case where `always`.
+    [[nodiscard]] static std::vector<Group> choose(std::vector<Group>& waiting, double room, bool always) {
+        std::vector<Group> chosen, rest;
+        for (const Group& g : waiting) {
+            const double used = static_cast<double>(g.used);
+            const bool take = used <= room || (always && chosen.empty());
+            if (take) room -= used;
+            (take ? chosen : rest).push_back(g);
+        }
+        waiting = std::move(rest);
         return chosen;
     }
 
-    [[nodiscard]] std::uint32_t page_width(const std::vector<Group>& chosen, std::uint32_t max_page) const {
-        std::uint64_t used = 0;
-        std::uint32_t widest = 1;
-        for (const Group& g : chosen) {
-            used += g.used;
-            for (std::uint32_t i = g.first; i < g.last; ++i) widest = std::max(widest, mask(i).width);
-        }
-        const auto square = static_cast<std::uint32_t>(std::ceil(std::sqrt(static_cast<double>(used) / 0.9)));
-        return std::min((std::max(square, widest) + 3) / 4 * 4, max_page);
-    }
-
-    // No group of the page could stay: the first one gets a page to itself, and if that was it, its charts spread.
-    static void retry_smaller(std::deque<Group>& waiting, const std::vector<Group>& left) {
-        waiting.insert(waiting.begin(), left.begin(), left.end());
-        Group first = waiting.front();
-        if (!first.alone && left.size() > 1) {
-            waiting.front().alone = true;
-            return;
-        }
-        waiting.pop_front();
-        LUMEL_CHECK(first.last - first.first > 1, "a chart larger than a page", first.first);
-        const std::uint64_t share = first.used / (first.last - first.first);
-        for (std::uint32_t i = first.last; i-- > first.first;) waiting.push_front({i, i + 1, share, false});
-    }
-
-    // Packs the groups on a new page, largest chart first. A group that does not fit comes off it again; those are
-    // returned, in order. A page that nothing stays on is dropped.
-    std::vector<Group> fill_page(const std::vector<Group>& chosen, std::uint32_t width, std::uint32_t height) {
-        PageBits bits(width);
+    // Adds the groups to a page, largest chart first. Where a chart finds no room, the last groups come off again until
+    // it does or its own group has to go; so the first group stays if it can be placed at all. Returns the groups that
+    // came off, in order.
+    std::vector<Group> add_groups(PageBits& bits, const std::vector<Group>& chosen, std::uint32_t height) {
         const std::vector<std::uint32_t> group_of = order_items(chosen);
         std::vector<std::vector<std::uint32_t>> placed(chosen.size());
-        std::vector<bool> evicted(chosen.size(), false);
+        std::size_t staying = chosen.size();  // groups before this one are on the page
         const auto page = static_cast<std::uint32_t>(result_.pages.size());
 
         std::uint32_t start_row = 0, key = std::numeric_limits<std::uint32_t>::max();
         for (std::size_t k = 0; k < order_.size(); ++k) {
             if (k % 256 == 0 && cancelled_()) return chosen;
             const std::uint32_t item = order_[k], group = group_of[k];
-            if (evicted[group]) continue;
+            if (group >= staying) continue;
             const ChartMask& m = mask(item);
             if (m.width + m.height < key) start_row = 0, key = m.width + m.height;
-            const PageBits::Spot spot = bits.find(m, start_row, height);
-            if (spot.found) {
-                start_row = spot.y;
-                bits.set(m, spot.x, spot.y);
-                result_.spots[item] = {page, spot.x, spot.y};
-                placed[group].push_back(item);
-                continue;
+            PageBits::Spot spot = bits.find(m, start_row, height);
+            while (!spot.found && group < staying) {
+                if (stop_at_first_failure_) return chosen;
+                --staying;
+                start_row = 0;
+                if (placed[staying].empty()) continue;
+                take_off(bits, placed[staying]);
+                if (group < staying) spot = bits.find(m, start_row, height);
             }
-            start_row = height;  // nothing of this size fits any more
-            evicted[group] = true;
-            if (stop_at_first_failure_) return chosen;
-            for (const std::uint32_t p : placed[group]) bits.clear(mask(p), result_.spots[p].x, result_.spots[p].y);
-            placed[group].clear();
+            if (!spot.found) continue;
+            start_row = spot.y;
+            bits.set(m, spot.x, spot.y);
+            result_.spots[item] = {page, spot.x, spot.y};
+            placed[group].push_back(item);
         }
-        return close_page(chosen, placed, evicted, width);
+        for (const std::vector<std::uint32_t>& group : placed)
+            on_page_.insert(on_page_.end(), group.begin(), group.end());
+        return {chosen.begin() + static_cast<std::ptrdiff_t>(staying), chosen.end()};
+    }
+
+    void take_off(PageBits& bits, std::vector<std::uint32_t>& group) const {
+        for (const std::uint32_t item : group) bits.clear(mask(item), result_.spots[item].x, result_.spots[item].y);
+        group.clear();
     }
 
     // Sorts the items of the groups by width + height, the larger first; ties by height, then index. Returns the
@@ -223,20 +246,14 @@ private:
         return group_of;
     }
 
-    std::vector<Group> close_page(const std::vector<Group>& chosen,
-                                  const std::vector<std::vector<std::uint32_t>>& placed,
-                                  const std::vector<bool>& evicted, std::uint32_t width) {
-        std::vector<Group> left;
-        PackPage page{width, 0, 0};
-        for (std::size_t g = 0; g < chosen.size(); ++g) {
-            if (evicted[g]) left.push_back(chosen[g]);
-            for (const std::uint32_t item : placed[g]) {
-                page.height = std::max(page.height, result_.spots[item].y + mask(item).height);
-                page.used += mask(item).used;
-            }
+    // Ends the page that on_page_ lies on; `height` 0: as high as it needs to be.
+    void close_page(std::uint32_t width, std::uint32_t height) {
+        PackPage page{width, height, 0};
+        for (const std::uint32_t item : on_page_) {
+            page.height = std::max(page.height, result_.spots[item].y + mask(item).height);
+            page.used += mask(item).used;
         }
-        if (page.used > 0) result_.pages.push_back(page);
-        return left;
+        result_.pages.push_back(page);
     }
 
     void trim(std::uint32_t max_page) {
@@ -247,6 +264,7 @@ private:
     std::span<const PackItem> items_;
     const std::function<bool()>& cancelled_;
     std::vector<std::uint32_t> order_;
+    std::vector<std::uint32_t> on_page_;  // items that stay on the current page
     bool stop_at_first_failure_ = false;
     Packing result_;
 };

@@ -103,6 +103,31 @@ Patch make_patch(const Mesh& mesh, const MeshTopology& topology, const std::vect
     return patch;
 }
 
+// The grid of float coordinates at the chart's far end, with a few bits to spare.
+double uv_rounding(const std::vector<UvTriangle>& uv) {
+    float largest = 0.0f;
+    for (const UvTriangle& t : uv)
+        for (const Vec2 p : t) largest = std::max({largest, std::abs(p.x), std::abs(p.y)});
+    return largest * 0x1p-20;
+}
+
+// Flipped triangles, and of every overlapping pair the smaller one. More than all of them are never listed.
+std::vector<std::uint32_t> find_defects(const MeshTopology& topology, const std::vector<std::uint32_t>& triangles,
+                                        const std::vector<UvTriangle>& uv) {
+    const double rounding = uv_rounding(uv);
+    std::vector<bool> defect(uv.size(), false);
+    for (std::size_t i = 0; i < uv.size(); ++i) defect[i] = uv_cross(uv[i]) <= 0.0;
+    const std::size_t enough = 4 * uv.size();
+    for (const auto& [a, b] : find_overlaps(uv, {rounding, rounding, 0.0}, enough).pairs) {
+        if (defect[a] || defect[b]) continue;
+        defect[topology.area[triangles[a]] < topology.area[triangles[b]] ? a : b] = true;
+    }
+    std::vector<std::uint32_t> out;
+    for (std::uint32_t i = 0; i < uv.size(); ++i)
+        if (defect[i]) out.push_back(i);
+    return out;
+}
+
 // ---- Maps -----------------------------------------------------------------------------------------------------------
 
 using Uvs = std::vector<Eigen::Vector2d>;  // per vertex of a patch
@@ -169,26 +194,44 @@ std::vector<UvTriangle> finish(const Patch& patch, Uvs uv) {
     return out;
 }
 
-// The cluster as one chart, if it can be.
-std::optional<FlatChart> flatten_whole(const Mesh& mesh, const MeshTopology& topology,
-                                       const std::vector<std::uint32_t>& triangles,
-                                       const ParameterizeOptions& options) {
+// One way to lay out a cluster, and what is wrong with it.
+struct Attempt {
+    std::vector<UvTriangle> uv;
+    std::vector<std::uint32_t> defects;  // positions in the cluster of triangles without which it may be injective
+    bool stretched = true;
+
+    [[nodiscard]] bool good() const { return !stretched && defects.empty(); }
+};
+
+Attempt attempt(const Mesh& mesh, const MeshTopology& topology, const std::vector<std::uint32_t>& triangles,
+                std::vector<UvTriangle> uv, const ParameterizeOptions& options) {
+    Attempt out;
+    out.uv = std::move(uv);
+    if (out.uv.empty()) return out;
+    out.stretched = l2_stretch(mesh, triangles, out.uv) > options.max_stretch;
+    if (!out.stretched) out.defects = find_defects(topology, triangles, out.uv);
+    return out;
+}
+
+// The cluster as one chart if it can be; else the more hopeful of the ways that were tried.
+Attempt flatten_whole(const Mesh& mesh, const MeshTopology& topology, const std::vector<std::uint32_t>& triangles,
+                      const ParameterizeOptions& options) {
     const Patch patch = make_patch(mesh, topology, triangles);
     const Eigen::Vector3d normal = mean_normal(topology, triangles);
     const Uvs projected = project(patch, normal);
-    const auto good = [&](const std::vector<UvTriangle>& uv) {
-        return !uv.empty() && l2_stretch(mesh, triangles, uv) <= options.max_stretch && is_injective(uv);
-    };
+    Attempt best;
     if (!is_planar(topology, triangles, normal, options.planar_cos)) {
-        if (const std::optional<Uvs> uv = conformal(patch, projected)) {
-            std::vector<UvTriangle> finished = finish(patch, *uv);
-            if (good(finished)) return FlatChart{triangles, std::move(finished)};
-        }
+        if (const std::optional<Uvs> uv = conformal(patch, projected))
+            best = attempt(mesh, topology, triangles, finish(patch, *uv), options);
+        if (best.good()) return best;
     }
-    std::vector<UvTriangle> finished = finish(patch, projected);
-    // A single triangle is always its own exact chart, however thin.
-    if (triangles.size() == 1 || good(finished)) return FlatChart{triangles, std::move(finished)};
-    return std::nullopt;
+    Attempt flat = attempt(mesh, topology, triangles, finish(patch, projected), options);
+    if (triangles.size() == 1) {  // always its own exact chart, however thin
+        flat.stretched = false;
+        flat.defects.clear();
+    }
+    if (flat.good() || best.stretched || (!flat.stretched && flat.defects.size() < best.defects.size())) return flat;
+    return best;
 }
 
 // ---- Splitting ------------------------------------------------------------------------------------------------------
@@ -226,6 +269,15 @@ std::vector<std::vector<std::uint32_t>> halve(const Mesh& mesh, const MeshTopolo
     return halves;
 }
 
+// Takes a few triangles out of a cluster: the rest, and those.
+std::vector<std::vector<std::uint32_t>> peel(const std::vector<std::uint32_t>& triangles,
+                                             const std::vector<std::uint32_t>& positions) {
+    std::vector<std::vector<std::uint32_t>> groups(2);
+    for (std::uint32_t i = 0; i < triangles.size(); ++i)
+        groups[std::binary_search(positions.begin(), positions.end(), i) ? 1 : 0].push_back(triangles[i]);
+    return groups;
+}
+
 // Groups triangles by the side of a box that they face.
 std::vector<std::vector<std::uint32_t>> box_sides(const MeshTopology& topology,
                                                   const std::vector<std::uint32_t>& triangles) {
@@ -248,11 +300,14 @@ public:
 
     void flatten(const std::vector<std::uint32_t>& triangles, int splits) {
         if (cancelled_()) return;
-        if (std::optional<FlatChart> chart = flatten_whole(mesh_, topology_, triangles, options_)) {
-            result_.charts.push_back(std::move(*chart));
+        Attempt best = flatten_whole(mesh_, topology_, triangles, options_);
+        if (best.good()) {
+            result_.charts.push_back({triangles, std::move(best.uv)});
         } else if (splits == options_.max_splits) {
             ++result_.fallbacks;
             flatten_by_box(triangles);
+        } else if (!best.stretched && 4 * best.defects.size() <= triangles.size()) {
+            flatten_parts(peel(triangles, best.defects), splits + 1);
         } else {
             flatten_parts(halve(mesh_, topology_, triangles), splits + 1);
         }
@@ -270,11 +325,11 @@ private:
     void flatten_by_box(const std::vector<std::uint32_t>& triangles) {
         for (const auto& side : box_sides(topology_, triangles)) {
             for (const auto& part : connected_parts(topology_, side)) {
-                if (std::optional<FlatChart> chart = flatten_whole(mesh_, topology_, part, options_)) {
-                    result_.charts.push_back(std::move(*chart));
-                    continue;
-                }
-                for (const std::uint32_t t : part) flatten({t}, options_.max_splits);
+                Attempt whole = flatten_whole(mesh_, topology_, part, options_);
+                if (whole.good())
+                    result_.charts.push_back({part, std::move(whole.uv)});
+                else
+                    for (const std::uint32_t t : part) flatten({t}, options_.max_splits);
             }
         }
     }
@@ -286,16 +341,10 @@ private:
     Parameterized result_;
 };
 
-double extent(const std::vector<UvTriangle>& uv) {
-    float largest = 0.0f;
-    for (const UvTriangle& t : uv)
-        for (const Vec2 p : t) largest = std::max({largest, std::abs(p.x), std::abs(p.y)});
-    return largest;
-}
-
 }  // namespace
 
 double l2_stretch(const Mesh& mesh, const std::vector<std::uint32_t>& triangles, const std::vector<UvTriangle>& uv) {
+    const double rounding = uv_rounding(uv);
     double weighted = 0.0, area_3d = 0.0, area_uv = 0.0;
     for (std::size_t i = 0; i < triangles.size(); ++i) {
         const Triangle& v = mesh.triangles[triangles[i]];
@@ -310,6 +359,11 @@ double l2_stretch(const Mesh& mesh, const std::vector<std::uint32_t>& triangles,
         // dP/du and dP/dv; multiplied by the area of the image so that a sliver's infinity has its own small weight.
         const Eigen::Vector3d du = e1 * v2 - e2 * v1, dv = e2 * u1 - e1 * u2;
         if (area == 0.0) continue;
+        const double longest = std::max({e1.norm(), e2.norm(), (e2 - e1).norm()});
+        if (2.0 * area <= 4.0 * rounding * longest) {  // thinner than the grid: its stretch would be that of rounding
+            weighted += area;
+            continue;
+        }
         if (determinant == 0.0) return std::numeric_limits<double>::infinity();
         weighted += area * 0.5 * (du.squaredNorm() + dv.squaredNorm()) / (determinant * determinant);
     }
@@ -317,11 +371,9 @@ double l2_stretch(const Mesh& mesh, const std::vector<std::uint32_t>& triangles,
 }
 
 bool is_injective(const std::vector<UvTriangle>& uv) {
-    const double size = extent(uv);
-    const double rounding = size * 0x1p-20;  // the float grid at the chart's far end, with a few bits to spare
-    for (const UvTriangle& t : uv)
-        if (uv_cross(t) <= 0.0 && uv_altitude(t) > rounding) return false;
-    return find_overlaps(uv, rounding_tolerance(size), 0).complete;
+    const double rounding = uv_rounding(uv);
+    return std::all_of(uv.begin(), uv.end(), [](const UvTriangle& t) { return uv_cross(t) > 0.0; }) &&
+           find_overlaps(uv, {rounding, rounding, 0.0}, 0).complete;
 }
 
 Parameterized parameterize(const Mesh& mesh, const MeshTopology& topology, const std::vector<std::uint32_t>& cluster,

@@ -31,7 +31,7 @@ struct Parameterized {
 Parameterized parameterize(const Mesh& mesh, const MeshTopology& topology, const std::vector<std::uint32_t>& cluster,
                            const ParameterizeOptions& options, const std::function<bool()>& cancelled);
 
-// Is every triangle turned the same way (up to the rounding of UVs) and no two of them on top of each other?
+// Is every triangle counter-clockwise, and are no two on top of each other by more than the rounding of UVs?
 bool is_injective(const std::vector<UvTriangle>& uv);
 
 // Sander, Snyder, Gortler, Hoppe, "Texture mapping progressive meshes" (2001): the area-weighted L2 stretch, with the

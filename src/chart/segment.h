@@ -17,7 +17,7 @@
 namespace lumel {
 
 struct SegmentOptions {
-    double cone_cos = 0.5735764363510461;  // cosine of the largest half angle of a cluster's normals: 55 degrees
+    double cone_cos = 0.34202;  // cosine of the largest half angle of a cluster's normals: 70 degrees
     double hard_crease_cos =
         0.8660254037844387;  // an edge whose vertex normals differ cuts above this angle: 30 degrees
     double soft_crease_cos = 0.2588190451025207;  // an edge with common vertex normals cuts above this one: 75 degrees
