@@ -73,6 +73,7 @@ Result<std::vector<ReadLight>> read_lights(const GltfDocument& document, const s
         if (node.named) read.light.name = node.name;
         read.light.position = frame.origin;
         read.light.direction = -frame.z;
+        read.node = node.index;
         out.push_back(std::move(read));
     }
     return out;

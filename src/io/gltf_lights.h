@@ -9,8 +9,9 @@
 namespace lumel {
 
 struct ReadLight {
-    Light light;             // named after its node, or after itself where the node has no name
-    std::string light_name;  // its own name in the file; may be empty
+    Light light;                 // named after its node, or after itself where the node has no name
+    std::string light_name;      // its own name in the file; may be empty
+    std::uint32_t node = kNone;  // whose it is; kNone for those of the sidecar
 };
 
 Result<std::vector<ReadLight>> read_lights(const GltfDocument& document, const std::vector<SceneNode>& nodes);

@@ -97,7 +97,10 @@ private:
     Status read_all_lights() {
         LUMEL_TRY(std::vector<ReadLight> lights, read_lights(document_, nodes_));
         LUMEL_TRY_STATUS(apply_lights(sidecar_, nodes_, lights));
-        for (ReadLight& read : lights) scene_.lights.push_back(std::move(read.light));
+        for (ReadLight& read : lights) {
+            document_.light_nodes.push_back(read.node);
+            scene_.lights.push_back(std::move(read.light));
+        }
         return success();
     }
 

@@ -98,7 +98,7 @@ Status apply_lights(const Sidecar& sidecar, const std::vector<SceneNode>& nodes,
     }
     for (const SidecarAreaLight& area : sidecar.area_lights) {
         LUMEL_TRY(Light light, placed(area, nodes, sidecar.where));
-        lights.push_back({std::move(light), {}});
+        lights.push_back({std::move(light), {}, kNone});
     }
     return success();
 }

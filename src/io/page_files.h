@@ -1,0 +1,63 @@
+// The names of the files in the output folder, in one place.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace lumel {
+
+inline constexpr const char* kSceneFile = "scene.glb";
+inline constexpr const char* kManifestFile = "manifest.json";
+inline constexpr const char* kReportFile = "report.json";
+
+// What is written for each page.
+enum class PageFile : std::uint8_t {
+    lightmap,         // I = E/pi over the included layers
+    irradiance,       // E, for three.js lightMap
+    l1,               // first directional encoding
+    master,           // all moments of all layers
+    ao,               // ambient occlusion
+    bent_normal,      // mean free direction
+    sky_visibility,   // share of the sky that is seen
+    preview_atlas,    // tone-mapped
+    preview_charts,   // a colour per chart
+    preview_samples,  // heat map of the sample counts
+};
+inline constexpr PageFile kPageFiles[] = {PageFile::lightmap,
+                                          PageFile::irradiance,
+                                          PageFile::l1,
+                                          PageFile::master,
+                                          PageFile::ao,
+                                          PageFile::bent_normal,
+                                          PageFile::sky_visibility,
+                                          PageFile::preview_atlas,
+                                          PageFile::preview_charts,
+                                          PageFile::preview_samples};
+
+struct PageFileName {
+    const char* stem;
+    const char* extension;
+};
+constexpr PageFileName page_file_name(PageFile kind) {
+    switch (kind) {
+        case PageFile::lightmap: return {"lightmap_", ".exr"};
+        case PageFile::irradiance: return {"irradiance_", ".exr"};
+        case PageFile::l1: return {"l1_", ".exr"};
+        case PageFile::master: return {"master_", ".exr"};
+        case PageFile::ao: return {"ao_", ".png"};
+        case PageFile::bent_normal: return {"bent_normal_", ".exr"};
+        case PageFile::sky_visibility: return {"sky_visibility_", ".png"};
+        case PageFile::preview_atlas: return {"preview_atlas_", ".png"};
+        case PageFile::preview_charts: return {"preview_charts_", ".png"};
+        case PageFile::preview_samples: return {"preview_samples_", ".png"};
+    }
+    return {"", ""};
+}
+
+// "lightmap_0.exr"
+inline std::string page_file(PageFile kind, std::uint32_t page) {
+    const PageFileName name = page_file_name(kind);
+    return name.stem + std::to_string(page) + name.extension;
+}
+
+}  // namespace lumel
