@@ -21,7 +21,7 @@ inline Vec3 direction_from_z(float z, float u) {
 // cosine-weighted, best for the irradiance. z = (sqrt(1 + 8u) - 1) / 2 inverts F(z) = (z + z^2)/2.
 struct GatherHemisphere {
     static Vec3 sample(Vec2 u) { return direction_from_z((std::sqrt(1.0f + 8.0f * u.x) - 1.0f) * 0.5f, u.y); }
-    static float pdf(float cosine) { return cosine > 0.0f ? (0.5f + cosine) * kInvTwoPi : 0.0f; }
+    static float pdf(float cosine) { return cosine >= 0.0f ? (0.5f + cosine) * kInvTwoPi : 0.0f; }
     static float inverse_u(float z) { return 0.5f * (z + z * z); }
 };
 
