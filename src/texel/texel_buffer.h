@@ -22,15 +22,16 @@ struct SamplePoint {
     float b1 = 0.0f, b2 = 0.0f;
 };
 
-// One entry per covered texel, in row-major order. A texel is covered if a triangle overlaps its square (conservative:
-// closed squares, so slivers and triangles between texel centres count), and owned by one chart.
+// One entry per covered texel, in row-major order. A texel is covered if a triangle overlaps its square by more than a
+// touch (1/1024 of a texel); slivers, triangles between texel centres and triangles without area in UV space count. It
+// is owned by one chart: the one with the most sample points in it, the first of equals.
 struct TexelBuffer {
     std::uint32_t page = 0, width = 0, height = 0;
     std::vector<std::uint16_t> x, y;
     std::vector<std::uint64_t> valid;           // bit s: Hammersley point s lies in a triangle of this texel
     std::vector<std::uint32_t> first_triangle;  // per texel into `triangles`, plus one past the end
-    std::vector<std::uint32_t> triangles;       // world triangles that overlap the texel, ascending
-    std::vector<Vec3> position;                 // of the representative point: the covered point nearest to the centre
+    std::vector<std::uint32_t> triangles;       // world triangles of the owner that overlap the texel, ascending
+    std::vector<Vec3> position;                 // of the representative point: the centre, or the sample nearest to it
     std::vector<Vec3> normal;                   // vertex normal there
     std::vector<float> world_size;              // metres across a texel: the longer edge of its parallelogram
     std::vector<std::uint32_t> texel_at;        // width*height: index of the covered texel there, or kNone
@@ -38,20 +39,22 @@ struct TexelBuffer {
     [[nodiscard]] std::size_t size() const { return x.size(); }
 };
 
-// Where Hammersley point `s` (0..63) lies in the unit square of a texel.
+// Where Hammersley point `s` (0..63) lies in the unit square of a texel: at least 1/128 from its sides, so that no
+// point falls on the rim of a chart that is aligned to the texels.
 Vec2 subtexel_point(std::uint32_t s);
 
 // Pages as triangle lists: which world triangles have texels on each page. Zero-area UV triangles count too.
 std::vector<std::vector<std::uint32_t>> triangles_by_page(const Scene& scene, const WorldGeometry& geometry,
                                                           const ChartSet& charts, const Atlas& atlas);
 
-// Diagnostics: "chart-overlap" for texels claimed by more than one chart (the first in page order owns them).
+// `page_triangles`: those of triangles_by_page. Diagnostics: "chart-overlap" for texels claimed by more than one chart.
+// Error: cancelled.
 Result<TexelBuffer> rasterize_page(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts,
                                    const Atlas& atlas, std::uint32_t page,
                                    std::span<const std::uint32_t> page_triangles, Context& context);
 
 // Expands the valid sample points of a texel, in order of s; at least one: where no Hammersley point lies inside a
-// triangle it is the covered point nearest to the texel's centre. Returns how many were written.
+// triangle it is the middle of the largest part that a triangle shares with the texel. Returns how many were written.
 std::uint32_t sample_points(const TexelBuffer& texels, std::size_t texel, const Scene& scene,
                             const WorldGeometry& geometry, const ChartSet& charts, const Atlas& atlas,
                             std::span<SamplePoint, kSamplesPerTexel> out);

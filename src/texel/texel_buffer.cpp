@@ -1,0 +1,65 @@
+#include "texel/texel_buffer.h"
+
+#include <bit>
+
+#include "base/check.h"
+#include "texel/texel_samples.h"
+
+namespace lumel {
+namespace {
+
+// The radical inverse of the index in base 2 beside the index itself, each in the middle of its sixty-fourth.
+constexpr std::array<Vec2, kSamplesPerTexel> hammersley_set() {
+    std::array<Vec2, kSamplesPerTexel> points;
+    for (std::uint32_t s = 0; s < kSamplesPerTexel; ++s) {
+        std::uint32_t reversed = 0;
+        for (std::uint32_t bit = 0; bit < 6; ++bit) reversed |= ((s >> bit) & 1u) << (5 - bit);
+        points[s] = {(static_cast<float>(s) + 0.5f) / 64.0f, (static_cast<float>(reversed) + 0.5f) / 64.0f};
+    }
+    return points;
+}
+constexpr std::array<Vec2, kSamplesPerTexel> kHammersley = hammersley_set();
+
+}  // namespace
+
+Vec2 subtexel_point(std::uint32_t s) { return kHammersley[s]; }
+
+std::vector<std::vector<std::uint32_t>> triangles_by_page(const Scene& scene, const WorldGeometry& geometry,
+                                                          const ChartSet& charts, const Atlas& atlas) {
+    std::vector<std::vector<std::uint32_t>> pages(atlas.pages.size());
+    for (std::uint32_t triangle = 0; triangle < geometry.triangle_count(); ++triangle) {
+        const std::uint32_t page = atlas.triangle_uv(charts, geometry, scene, triangle).page;
+        if (page == kNone) continue;
+        LUMEL_CHECK(page < pages.size(), page, pages.size());
+        pages[page].push_back(triangle);
+    }
+    return pages;
+}
+
+std::uint32_t sample_points(const TexelBuffer& texels, std::size_t texel, const Scene& scene,
+                            const WorldGeometry& geometry, const ChartSet& charts, const Atlas& atlas,
+                            std::span<SamplePoint, kSamplesPerTexel> out) {
+    const std::uint32_t first = texels.first_triangle[texel], end = texels.first_triangle[texel + 1];
+    const std::span triangles(&texels.triangles[first], end - first);
+    const TexelSamples samples(texels.x[texel], texels.y[texel]);
+    const auto uv = [&](std::uint32_t triangle) {
+        return TexelTriangle(atlas.triangle_uv(charts, geometry, scene, triangle).texels);
+    };
+    const std::uint64_t valid = texels.valid[texel];
+    if (valid == 0) {
+        out[0] = samples.middle_of_largest_part(triangles, uv);
+        return 1;
+    }
+    std::uint64_t missing = valid;
+    for (const std::uint32_t triangle : triangles) {
+        samples.for_each_inside(uv(triangle), missing, [&](std::uint32_t s, Barycentrics b) {
+            out[rank(valid, s)] = {triangle, b.b1, b.b2};
+            missing &= ~(std::uint64_t{1} << s);
+        });
+        if (missing == 0) break;
+    }
+    LUMEL_CHECK(missing == 0, texels.page, texels.x[texel], texels.y[texel]);
+    return static_cast<std::uint32_t>(std::popcount(valid));
+}
+
+}  // namespace lumel
