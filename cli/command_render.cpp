@@ -42,12 +42,12 @@ Result<Camera> parse_camera(const std::string& text) {
 }
 
 // A camera of the scene by name, "view K" (found automatically), a point of view, or the first there is.
-Result<Camera> find_camera(const std::string& text, const Transport& transport) {
+Result<Camera> find_camera(const std::string& text, const Transport& transport, Context& context) {
     if (text.find(';') != std::string::npos) return parse_camera(text);
     for (const Camera& camera : transport.scene.cameras)
         if (camera.name == text) return camera;
     constexpr std::size_t kAutomaticViews = 4;
-    const auto views = choose_views(transport.scene, transport.geometry, transport.tracer, kAutomaticViews);
+    LUMEL_TRY(const std::vector<Camera> views, choose_views(transport, kAutomaticViews, context));
     if (text.empty()) return views.front();
     std::string known;
     for (const Camera& camera : views) {
@@ -87,7 +87,7 @@ Status run(const Options& options) {
                      "give it a sky, for example --sky 1,1,1, or a sun with --sun-direction"};
     LUMEL_TRY(const std::unique_ptr<Tracer> tracer, make_embree_tracer(geometry, surfaces, context));
     const Transport transport{scene, geometry, surfaces, lights, *tracer};
-    LUMEL_TRY(const Camera camera, find_camera(options.camera, transport));
+    LUMEL_TRY(const Camera camera, find_camera(options.camera, transport, context));
 
     PathOptions path;
     path.bounces = light.bounces;

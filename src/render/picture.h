@@ -28,9 +28,8 @@ Result<Image> render_picture(const Transport& transport, const PathOptions& path
                              const PictureOptions& options, const BakedIrradiance* baked, Context& context);
 
 // The scene's own cameras, then viewpoints found by looking around in it, until there are `count`: rooms are looked at
-// from inside, open scenes from above a corner. Deterministic.
-std::vector<Camera> choose_views(const Scene& scene, const WorldGeometry& geometry, const Tracer& tracer,
-                                 std::size_t count);
+// from inside, where there is light; open scenes from above a corner. Deterministic.
+Result<std::vector<Camera>> choose_views(const Transport& transport, std::size_t count, Context& context);
 
 // A camera at `eye` that looks at `target`, up +Y.
 Camera look_at(Vec3 eye, Vec3 target, float vertical_fov);

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/try.h"
 #include "math/constants.h"
 #include "math/sampler.h"
 #include "math/warp.h"
@@ -74,40 +75,79 @@ Camera overview(const WorldGeometry& geometry, std::size_t corner) {
     return look_at(eye, centre, kFieldOfView);
 }
 
-}  // namespace
-
-std::vector<Camera> choose_views(const Scene& scene, const WorldGeometry& geometry, const Tracer& tracer,
-                                 std::size_t count) {
-    std::vector<Camera> views(scene.cameras.begin(), scene.cameras.begin() + static_cast<std::ptrdiff_t>(std::min(
-                                                                                 count, scene.cameras.size())));
+// Points among surfaces, by falling score; none where few points see surfaces all around: that scene is open and looked
+// at from outside.
+std::vector<Candidate> find_candidates(const Transport& transport) {
+    const WorldGeometry& geometry = transport.geometry;
     const Vec3 size = geometry.bounds_max - geometry.bounds_min;
-    const float diagonal = length(size);
-    std::vector<Candidate> candidates;
+    std::vector<Candidate> out;
     for (std::uint32_t i = 0; i < kCandidates; ++i) {
         const Sampler sampler(kKey, i);
         const Vec2 ground = sampler.pair(1);
         const Vec3 eye =
             geometry.bounds_min + Vec3{size.x * (0.04f + 0.92f * ground.x), size.y * (0.15f + 0.6f * sampler.one(2)),
                                        size.z * (0.04f + 0.92f * ground.y)};
-        const Candidate candidate = look_around(eye, mix32(kKey + i), tracer, geometry, diagonal);
-        if (candidate.score > 0.0f) candidates.push_back(candidate);
+        const Candidate candidate = look_around(eye, mix32(kKey + i), transport.tracer, geometry, length(size));
+        if (candidate.score > 0.0f) out.push_back(candidate);
     }
-    std::stable_sort(candidates.begin(), candidates.end(),
-                     [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
-    // A room is a place where many points see surfaces all around; else the scene is looked at from outside.
-    const bool enclosed = candidates.size() * 8 >= kCandidates;
-    std::vector<Vec3> eyes;
-    for (const Camera& view : views) eyes.push_back(view.transform.translation);
-    for (const float spacing : {0.3f, 0.15f, 0.05f}) {
-        if (!enclosed) break;
+    if (out.size() * 8 < kCandidates) return {};
+    std::stable_sort(out.begin(), out.end(), [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+    return out;
+}
+
+// A thumbnail from each of the best candidates: those that see much less light than the brightest half are dropped
+// (cavities inside walls, closed rooms without a lamp).
+Result<std::vector<Candidate>> keep_lit(const Transport& transport, std::vector<Candidate> candidates,
+                                        Context& context) {
+    constexpr std::size_t kThumbnails = 48;
+    constexpr PictureOptions kThumbnail{8, 6, 4};
+    constexpr float kDim = 0.05f;
+    candidates.resize(std::min(candidates.size(), kThumbnails));
+    PathOptions path;
+    path.bounces = 8;
+    std::vector<float> light;
+    for (const Candidate& c : candidates) {
+        LUMEL_TRY(const Image image, render_picture(transport, path, look_at(c.eye, c.target, kFieldOfView), kThumbnail,
+                                                    nullptr, context));
+        // The median: one bright window does not light a room.
+        std::vector<float> luminances;
+        for (std::size_t i = 0; i < image.data.size(); i += 3)
+            luminances.push_back(luminance({image.data[i], image.data[i + 1], image.data[i + 2]}));
+        std::nth_element(luminances.begin(), luminances.begin() + 24, luminances.end());
+        light.push_back(luminances[24]);
+    }
+    std::vector<float> sorted = light;
+    std::sort(sorted.begin(), sorted.end());
+    std::vector<Candidate> lit;
+    for (std::size_t i = 0; i < candidates.size(); ++i)
+        if (light[i] > kDim * sorted[sorted.size() * 3 / 4]) lit.push_back(candidates[i]);
+    return lit;
+}
+
+// The best of them that keep their distance from each other and from the views there are.
+void add_spread(const std::vector<Candidate>& candidates, float diagonal, std::size_t count,
+                std::vector<Camera>& views) {
+    for (const float spacing : {0.3f, 0.15f, 0.05f})
         for (const Candidate& c : candidates) {
-            if (views.size() >= count) break;
-            const bool near = std::any_of(eyes.begin(), eyes.end(),
-                                          [&](Vec3 eye) { return length(eye - c.eye) < spacing * diagonal; });
-            if (near) continue;
-            views.push_back(look_at(c.eye, c.target, kFieldOfView));
-            eyes.push_back(c.eye);
+            if (views.size() >= count) return;
+            const bool near = std::any_of(views.begin(), views.end(), [&](const Camera& view) {
+                return length(view.transform.translation - c.eye) < spacing * diagonal;
+            });
+            if (!near) views.push_back(look_at(c.eye, c.target, kFieldOfView));
         }
+}
+
+}  // namespace
+
+Result<std::vector<Camera>> choose_views(const Transport& transport, std::size_t count, Context& context) {
+    const Scene& scene = transport.scene;
+    const WorldGeometry& geometry = transport.geometry;
+    std::vector<Camera> views(scene.cameras.begin(), scene.cameras.begin() + static_cast<std::ptrdiff_t>(std::min(
+                                                                                 count, scene.cameras.size())));
+    if (views.size() < count) {
+        const std::vector<Candidate> candidates = find_candidates(transport);
+        LUMEL_TRY(const std::vector<Candidate> lit, keep_lit(transport, candidates, context));
+        add_spread(lit, length(geometry.bounds_max - geometry.bounds_min), count, views);
     }
     for (std::size_t corner = 0; views.size() < count; ++corner) views.push_back(overview(geometry, corner));
     for (std::size_t i = 0; i < views.size(); ++i)
