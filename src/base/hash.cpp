@@ -7,9 +7,9 @@ namespace lumel {
 std::string Hash128::hex() const {
     static constexpr char kDigits[] = "0123456789abcdef";
     std::string out(32, '0');
-    for (int i = 0; i < 16; ++i) {
-        out[static_cast<std::size_t>(i)] = kDigits[(high >> (60 - 4 * i)) & 15];
-        out[static_cast<std::size_t>(16 + i)] = kDigits[(low >> (60 - 4 * i)) & 15];
+    for (std::size_t i = 0; i < 16; ++i) {
+        out[i] = kDigits[(high >> (60 - 4 * i)) & 15];
+        out[16 + i] = kDigits[(low >> (60 - 4 * i)) & 15];
     }
     return out;
 }

@@ -25,7 +25,8 @@ struct Pixels {
     [[nodiscard]] std::size_t count() const { return map.radiance.size(); }
     [[nodiscard]] float strength_at(std::size_t pixel) const { return strength(map.radiance[pixel]); }
     [[nodiscard]] Vec3 direction(std::size_t pixel) const {
-        const auto x = static_cast<float>(pixel % map.width), y = static_cast<float>(pixel / map.width);
+        const std::size_t column = pixel % map.width, row = pixel / map.width;
+        const auto x = static_cast<float>(column), y = static_cast<float>(row);
         return sky_direction((x + 0.5f) / static_cast<float>(map.width), (y + 0.5f) / static_cast<float>(map.height));
     }
     // The eight around a pixel; columns wrap, and beyond a pole lies the other side.
