@@ -1,0 +1,209 @@
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "io/image_codecs.h"
+#include "support/temporary_folder.h"
+#include "support/test_data.h"
+
+namespace lumel {
+namespace {
+
+std::vector<std::byte> bytes_of(const std::string& text) {
+    const auto bytes = std::as_bytes(std::span(text));
+    return {bytes.begin(), bytes.end()};
+}
+
+Result<Image> decode(const std::string& text) { return decode_image(bytes_of(text), "test"); }
+
+std::string error_of(const std::string& text) {
+    const auto image = decode(text);
+    return image.ok() ? "no error" : image.error().text();
+}
+
+std::string hdr(const std::string& size, const std::string& pixels) {
+    return "#?RADIANCE\nEXPOSURE=1\nFORMAT=32-bit_rle_rgbe\n\n" + size + "\n" + pixels;
+}
+
+// Mantissa 128 and exponent 129 are 128 * 2^(129 - 136) = 1.
+const std::string kOne{"\x80\x40\x20\x81", 4};
+
+TEST(DecodeHdr, ReadsFlatPixels) {
+    const auto image = decode(hdr("-Y 2 +X 1", kOne + std::string("\x01\x02\x03\x00", 4)));
+    ASSERT_TRUE(image.ok()) << image.error().text();
+    EXPECT_EQ(image->width, 1u);
+    EXPECT_EQ(image->height, 2u);
+    EXPECT_EQ(image->at(0, 0)[0], 1.0f);
+    EXPECT_EQ(image->at(0, 0)[1], 0.5f);
+    EXPECT_EQ(image->at(0, 0)[2], 0.25f);
+    EXPECT_EQ(image->at(0, 1)[0], 0.0f) << "exponent 0 is black";
+}
+
+TEST(DecodeHdr, ReadsRowsFromTheBottom) {
+    const auto image = decode(hdr("+Y 2 +X 1", kOne + std::string(4, '\0')));
+    ASSERT_TRUE(image.ok());
+    EXPECT_EQ(image->at(0, 1)[0], 1.0f);
+    EXPECT_EQ(image->at(0, 0)[0], 0.0f);
+}
+
+TEST(DecodeHdr, ReadsRunLengths) {
+    // Eight pixels: red as a run, green as a literal, blue as two runs, exponent as a run.
+    const std::string row = std::string("\x02\x02\x00\x08", 4) + "\x88\x80" +
+                            std::string("\x08\x00\x10\x20\x30\x40\x50\x60\x70", 9) + "\x83\x80\x85\x40" + "\x88\x81";
+    const auto image = decode(hdr("-Y 1 +X 8", row));
+    ASSERT_TRUE(image.ok()) << image.error().text();
+    EXPECT_EQ(image->at(7, 0)[0], 1.0f);
+    EXPECT_EQ(image->at(7, 0)[1], float(0x70) / 128);
+    EXPECT_EQ(image->at(2, 0)[2], 1.0f);
+    EXPECT_EQ(image->at(3, 0)[2], 0.5f);
+}
+
+TEST(DecodeHdr, ReadsOldRunLengths) {
+    const auto image = decode(hdr("-Y 1 +X 4", kOne + std::string("\x01\x01\x01\x03", 4)));
+    ASSERT_TRUE(image.ok()) << image.error().text();
+    EXPECT_EQ(image->at(3, 0)[1], 0.5f);
+}
+
+TEST(DecodeHdr, RefusesDamage) {
+    EXPECT_NE(error_of(hdr("-Y 2 +X 1", kOne)).find("ends within the pixels"), std::string::npos);
+    EXPECT_NE(error_of(hdr("-Y 1 +X 4", kOne + std::string("\x01\x01\x01\x09", 4))).find("leaves its row"),
+              std::string::npos);
+    EXPECT_NE(error_of(hdr("-Y 1 +X 8", std::string("\x02\x02\x00\x08\x89\x80", 6))).find("leaves its row"),
+              std::string::npos);
+    EXPECT_NE(error_of(hdr("-Y 1 +X 8", std::string("\x02\x02\x00\x09", 4))).find("another length"), std::string::npos);
+    EXPECT_NE(error_of(hdr("-Y 1 +X 8", std::string("\x02\x02\x00\x08\x00\x80", 6))).find("leaves its row"),
+              std::string::npos);
+    EXPECT_NE(error_of(hdr("-Y 99999 +X 8", "")).find("16384"), std::string::npos);
+    EXPECT_NE(error_of(hdr("-Y 16384 +X 16384", "")).find("cannot hold"), std::string::npos);
+    EXPECT_NE(error_of(hdr("-Y 0 +X 8", "")).find("no pixels"), std::string::npos);
+    EXPECT_NE(error_of(hdr("+X 8 -Y 8", "")).find("horizontal"), std::string::npos);
+    EXPECT_NE(error_of(hdr("-Y 8 -X 8", "")).find("mirrored"), std::string::npos);
+    EXPECT_NE(error_of("#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\nabcd").find("not RGBE"), std::string::npos);
+    EXPECT_NE(error_of("#?RADIANCE\nFORMAT").find("header"), std::string::npos);
+}
+
+TEST(DecodePfm, ReadsBothByteOrdersFromTheBottom) {
+    const float pixels[2] = {1.5f, -2.0f};
+    std::string little(8, '\0'), big(8, '\0');
+    std::memcpy(little.data(), pixels, 8);
+    for (std::size_t i = 0; i < 8; ++i) big[i] = little[i / 4 * 4 + 3 - i % 4];
+    for (const auto& [header, data] : {std::pair{"Pf\n1 2\n-1.0\n", little}, {"Pf\n1 2\n1.0\n", big}}) {
+        const auto image = decode(header + data);
+        ASSERT_TRUE(image.ok()) << image.error().text();
+        EXPECT_EQ(image->channels, 1u);
+        EXPECT_EQ(image->at(0, 1)[0], 1.5f) << "the first row of the file is the lowest";
+        EXPECT_EQ(image->at(0, 0)[0], -2.0f);
+    }
+}
+
+TEST(DecodePfm, RefusesDamage) {
+    EXPECT_NE(error_of("PF\n2 2\n-1.0\n1234").find("ends within"), std::string::npos);
+    EXPECT_NE(error_of("PF\n2 x\n-1.0\n").find("header"), std::string::npos);
+    EXPECT_NE(error_of("PF\n2 2").find("header"), std::string::npos);
+    EXPECT_NE(error_of("PF\n16000 16000\n-1.0\n").find("cannot hold"), std::string::npos);
+}
+
+TEST(DecodeImage, NamesWhatItKnows) {
+    EXPECT_NE(error_of("GIF89a").find("give PNG, JPEG"), std::string::npos);
+    EXPECT_NE(error_of("").find("no image"), std::string::npos);
+}
+
+TEST(DecodeImage, PngsAreReadAsStored) {
+    const std::vector<std::uint8_t> pixels{0, 51, 255, 102, 153, 204};
+    const auto image = decode_image(encode_png(2, 1, 3, pixels), "test");
+    ASSERT_TRUE(image.ok()) << image.error().text();
+    EXPECT_EQ(image->channels, 3u);
+    for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(image->data[i], float(pixels[i]) / 255.0f) << "not linearised";
+}
+
+// What write_exr wrote, with one function per pixel and channel.
+std::vector<std::byte> exr_bytes(test::TemporaryFolder& folder, const std::vector<ExrChannelSource>& channels) {
+    const auto path = folder / "image.exr";
+    const Status status = write_exr(path, 5, 3, channels, [](std::uint32_t y, std::size_t c, std::span<float> out) {
+        for (std::size_t x = 0; x < out.size(); ++x) out[x] = float(x) + 10 * float(y) + 100 * float(c);
+    });
+    EXPECT_TRUE(status.ok());
+    return read_file(path, 1 << 20).value();
+}
+
+TEST(DecodeExr, FindsColourAndSingleChannels) {
+    test::TemporaryFolder folder;
+    // Channels stand in the file in alphabetical order; the values say which was asked for.
+    const auto rgb = decode_image(exr_bytes(folder, {{"direct.R"}, {"direct.G"}, {"direct.B"}, {"coverage"}}), "test");
+    ASSERT_TRUE(rgb.ok()) << rgb.error().text();
+    EXPECT_EQ(rgb->channels, 3u);
+    EXPECT_EQ(rgb->at(4, 2)[0], 24.0f);
+    EXPECT_EQ(rgb->at(4, 2)[1], 124.0f);
+    EXPECT_EQ(rgb->at(4, 2)[2], 224.0f);
+    const auto one = decode_image(exr_bytes(folder, {{"depth"}}), "test");
+    ASSERT_TRUE(one.ok()) << one.error().text();
+    EXPECT_EQ(one->channels, 1u);
+    EXPECT_EQ(one->at(3, 1)[0], 13.0f);
+    const auto neither = decode_image(exr_bytes(folder, {{"a"}, {"b"}}), "test");
+    EXPECT_FALSE(neither.ok());
+}
+
+TEST(DecodeExr, ReadsNamedChannels) {
+    test::TemporaryFolder folder;
+    exr_bytes(folder, {{"sky.L0.R"}, {"count"}, {"coverage", ExrType::half}});
+    const std::vector<std::string> names{"coverage", "sky.L0.R"};
+    const auto channels = read_exr_channels(folder / "image.exr", names);
+    ASSERT_TRUE(channels.ok()) << channels.error().text();
+    EXPECT_EQ(channels->names, names);
+    EXPECT_EQ(channels->planes[0][5], 210.0f);
+    EXPECT_EQ(channels->planes[1][5], 10.0f);
+    const auto all = read_exr_channels(folder / "image.exr", {});
+    ASSERT_TRUE(all.ok());
+    EXPECT_EQ(all->names, (std::vector<std::string>{"count", "coverage", "sky.L0.R"}));
+    const std::vector<std::string> absent{"direct.R"};
+    const auto missing = read_exr_channels(folder / "image.exr", absent);
+    ASSERT_FALSE(missing.ok());
+    EXPECT_NE(missing.error().text().find("no channel 'direct.R'"), std::string::npos);
+}
+
+TEST(DecodeExr, RefusesEveryTruncation) {
+    test::TemporaryFolder folder;
+    const std::vector<std::byte> whole = exr_bytes(folder, {{"R"}, {"G"}, {"B"}});
+    ASSERT_TRUE(decode_image(whole, "test").ok());
+    for (std::size_t size = 0; size < whole.size(); size += 7)
+        EXPECT_FALSE(decode_image(std::span(whole).first(size), "test").ok()) << size;
+}
+
+TEST(ReadSky, WantsTwiceAsWideAsHighAndSanePixels) {
+    test::TemporaryFolder folder;
+    const auto sky_error = [&](std::uint32_t width, std::uint32_t height, float value) {
+        Image image(width, height, 3);
+        image.data[4] = value;
+        EXPECT_TRUE(write_exr(folder / "sky.exr", image, ExrType::full).ok());
+        const auto sky = read_sky(folder / "sky.exr");
+        return sky.ok() ? "no error" : sky.error().text();
+    };
+    EXPECT_EQ(sky_error(4, 2, 7.0f), "no error");
+    EXPECT_NE(sky_error(4, 3, 1.0f).find("not twice as wide"), std::string::npos);
+    EXPECT_NE(sky_error(4, 2, -1.0f).find("pixel (1, 0)"), std::string::npos);
+    EXPECT_NE(sky_error(4, 2, std::numeric_limits<float>::infinity()).find("pixel (1, 0)"), std::string::npos);
+    EXPECT_FALSE(read_sky(folder / "gone.exr").ok());
+}
+
+TEST(ReadSky, ReadsARealMap) {
+    const auto path = test::data_file("env/venice_sunset_512.hdr");
+    if (!path) GTEST_SKIP() << "no test data; set LUMEL_DATA";
+    const auto sky = read_sky(*path);
+    ASSERT_TRUE(sky.ok()) << sky.error().text();
+    EXPECT_EQ(sky->width, 512u);
+    float largest = 0.0f;
+    for (const Vec3& pixel : sky->radiance) largest = std::max(largest, max_component(pixel));
+    EXPECT_EQ(largest, 1856.0f) << "as the data's table says";
+}
+
+TEST(ReadFile, KeepsItsCeiling) {
+    test::TemporaryFolder folder;
+    ASSERT_TRUE(write_file(folder / "f", bytes_of("12345")).ok());
+    EXPECT_EQ(read_file(folder / "f", 5).value(), bytes_of("12345"));
+    EXPECT_FALSE(read_file(folder / "f", 4).ok());
+    EXPECT_FALSE(read_file(folder.path(), 100).ok()) << "a folder is no file";
+    EXPECT_FALSE(read_file("/dev/zero", 100).ok()) << "a device has no end";
+}
+
+}  // namespace
+}  // namespace lumel
