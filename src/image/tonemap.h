@@ -22,7 +22,7 @@ std::uint8_t srgb8(float linear);
 // do not count; an empty mask counts all.
 struct AutoExposure {
     double fraction = 0.75;  // of the texels are darker than
-    float target = 0.6f;     // this, after exposure
+    float target = 0.5f;     // this, after exposure
 };
 float auto_exposure(const Image& rgb, std::span<const std::uint8_t> mask = {}, AutoExposure options = {});
 

@@ -72,8 +72,8 @@ public:
     std::vector<std::span<const std::byte>> views;
     std::vector<std::size_t> view_strides;              // byteStride; 0 = tightly packed
     std::vector<std::vector<std::byte>> decoded_views;  // storage of the decoded ones
-    // One per Scene::lights: the node whose KHR_lights_punctual it is, kNone for lights of the sidecar. The writer removes
-    // lights that are baked by it; where the reader left it empty, all punctual lights count as baked.
+    // One per Scene::lights: the node whose KHR_lights_punctual it is, kNone for lights of the sidecar. The writer
+    // removes lights that are baked by it; where the reader left it empty, all punctual lights count as baked.
     std::vector<std::uint32_t> light_nodes;
     std::uint64_t file_bytes = 0;  // the file and its external buffers: bounds what it may expand to
 

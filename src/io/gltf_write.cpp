@@ -638,6 +638,7 @@ private:
                                              {"l1", unit_name(LightUnit::e_over_pi)},
                                              {"texture", "albedo x E/pi"}}},
                                            {"manifest", kManifestFile},
+                                           {"geometry", in_.geometry_hash},
                                            {"pages", std::move(pages)}};
         add_to_list(root_, "extensionsUsed", kExtension);
         root_["asset"]["generator"] = "Lumel";

@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "chart/chart_set.h"
@@ -34,6 +35,7 @@ struct GltfWriteInput {
     const Atlas& atlas;
     std::span<const LitTexture> textures;  // one per page of the atlas
     Include include;
+    std::string geometry_hash;  // of the baked geometry (baked.h), kept for those who read the UVs back
 };
 
 // Errors: io; invalid_input where the document holds what the reader did not have to look at and JSON cannot express.

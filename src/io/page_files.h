@@ -9,6 +9,7 @@ namespace lumel {
 inline constexpr const char* kSceneFile = "scene.glb";
 inline constexpr const char* kManifestFile = "manifest.json";
 inline constexpr const char* kReportFile = "report.json";
+inline constexpr const char* kViewStem = "preview_view_";  // preview_view_0.png: the truth beside the bake
 
 // What is written for each page.
 enum class PageFile : std::uint8_t {

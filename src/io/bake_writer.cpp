@@ -1,0 +1,154 @@
+#include "io/bake_writer.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "base/check.h"
+#include "base/hash.h"
+#include "base/try.h"
+#include "chart/chart_picture.h"
+#include "image/colormap.h"
+#include "image/tonemap.h"
+#include "io/baked.h"
+#include "io/gltf_write.h"
+#include "io/image_io.h"
+#include "io/manifest.h"
+#include "io/output_folder.h"
+#include "io/page_files.h"
+#include "io/page_writer.h"
+
+namespace lumel {
+namespace {
+
+constexpr std::uint32_t kPreviewEdge = 1024;
+
+// Every block-th pixel of an RGB picture.
+std::vector<std::uint8_t> thin_out(const std::vector<std::uint8_t>& rgb, std::uint32_t width, std::uint32_t height,
+                                   const PagePreview& like) {
+    const std::uint32_t block = (std::max(width, height) + kPreviewEdge - 1) / kPreviewEdge;
+    std::vector<std::uint8_t> out;
+    for (std::uint32_t y = 0; y < like.irradiance.height; ++y)
+        for (std::uint32_t x = 0; x < like.irradiance.width; ++x) {
+            const std::size_t from = 3 * (std::size_t{y * block} * width + x * block);
+            out.insert(out.end(), rgb.begin() + static_cast<std::ptrdiff_t>(from),
+                       rgb.begin() + static_cast<std::ptrdiff_t>(from + 3));
+        }
+    return out;
+}
+
+std::vector<std::uint8_t> heat_map(const PagePreview& preview, float most) {
+    std::vector<std::uint8_t> out(preview.covered.size() * 3);
+    for (std::size_t i = 0; i < preview.covered.size(); ++i) {
+        if (preview.covered[i] == 0) continue;
+        const Vec3 color = heat_color(most > 0.0f ? preview.samples.data[i] / most : 0.0f);
+        for (std::size_t c = 0; c < 3; ++c) out[3 * i + c] = static_cast<std::uint8_t>(color[c] * 255.0f + 0.5f);
+    }
+    return out;
+}
+
+// One exposure for all pages, from all covered texels.
+float exposure_of(const std::vector<PagePreview>& previews) {
+    Image all(0, 1, 3);
+    for (const PagePreview& preview : previews)
+        for (std::size_t i = 0; i < preview.covered.size(); ++i)
+            if (preview.covered[i] != 0)
+                all.data.insert(all.data.end(), &preview.irradiance.data[3 * i], &preview.irradiance.data[3 * i] + 3);
+    all.width = static_cast<std::uint32_t>(all.data.size() / 3);
+    return auto_exposure(all);
+}
+
+float most_samples(const std::vector<PagePreview>& previews) {
+    float most = 0.0f;
+    for (const PagePreview& preview : previews)
+        for (const float count : preview.samples.data) most = std::max(most, count);
+    return most;
+}
+
+}  // namespace
+
+struct BakeWriter::Impl {
+    OutputFolder output;
+    const LoadedScene& loaded;
+    BakeOptions options;
+    ChartSet charts;
+    Atlas atlas;
+    std::string geometry_hash;
+    std::vector<ManifestPage> pages;
+    std::vector<LitTexture> textures;
+    std::vector<PagePreview> previews;
+
+    [[nodiscard]] std::filesystem::path file(PageFile kind, std::uint32_t page) const {
+        return output.path() / page_file(kind, page);
+    }
+
+    Status write_chart_preview(std::uint32_t page) {
+        const AtlasPage& size = atlas.pages[page];
+        const PagePreview& preview = previews[page];
+        const auto rgb = colour_ids(chart_ids(loaded.scene, charts, atlas, page));
+        return write_png(file(PageFile::preview_charts, page), preview.irradiance.width, preview.irradiance.height, 3,
+                         thin_out(rgb, size.width, size.height, preview));
+    }
+
+    Status write_previews() {
+        const float exposure = exposure_of(previews), most = most_samples(previews);
+        for (std::uint32_t p = 0; p < previews.size(); ++p) {
+            const Image& image = previews[p].irradiance;
+            LUMEL_TRY_STATUS(
+                write_png(file(PageFile::preview_atlas, p), image.width, image.height, 3, tonemap(image, exposure)));
+            LUMEL_TRY_STATUS(write_png(file(PageFile::preview_samples, p), image.width, image.height, 3,
+                                       heat_map(previews[p], most)));
+        }
+        return success();
+    }
+};
+
+BakeWriter::BakeWriter(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+BakeWriter::~BakeWriter() = default;
+BakeWriter::BakeWriter(BakeWriter&&) noexcept = default;
+BakeWriter& BakeWriter::operator=(BakeWriter&&) noexcept = default;
+
+Result<BakeWriter> BakeWriter::create(const std::filesystem::path& output, const LoadedScene& loaded,
+                                      const BakeOptions& options) {
+    LUMEL_TRY(OutputFolder folder, OutputFolder::create(output));
+    return BakeWriter(std::unique_ptr<Impl>(new Impl{std::move(folder), loaded, options, {}, {}, {}, {}, {}, {}}));
+}
+
+const std::filesystem::path& BakeWriter::folder() const { return impl_->output.path(); }
+
+Status BakeWriter::layout(const WorldGeometry& geometry, const ChartSet& charts, const Atlas& atlas) {
+    impl_->charts = charts;
+    impl_->atlas = atlas;
+    impl_->geometry_hash = hash_geometry(geometry);
+    return success();
+}
+
+Status BakeWriter::page(const Lightmap& lightmap) {
+    LUMEL_CHECK(lightmap.page == impl_->pages.size(), lightmap.page, impl_->pages.size());
+    const LayerWeights weights = layer_weights(impl_->options.include);
+    LUMEL_TRY(ManifestPage page, write_page_files(folder(), lightmap, weights));
+    impl_->textures.push_back(lit_texture(lightmap, weights));
+    page.display_strength = impl_->textures.back().strength;
+    impl_->previews.push_back(preview_of(lightmap, weights, kPreviewEdge));
+    LUMEL_TRY_STATUS(impl_->write_chart_preview(lightmap.page));
+    for (const PageFile kind : {PageFile::preview_atlas, PageFile::preview_charts, PageFile::preview_samples})
+        page.files.push_back({kind, "8-bit"});
+    impl_->pages.push_back(std::move(page));
+    return success();
+}
+
+Status BakeWriter::write_scene() {
+    return write_lit_gltf(folder() / kSceneFile,
+                          {*impl_->loaded.document, impl_->loaded.scene, impl_->charts, impl_->atlas, impl_->textures,
+                           impl_->options.include, impl_->geometry_hash});
+}
+
+Status BakeWriter::finish(const BakeReport& report, const Diagnostics& diagnostics) {
+    LUMEL_TRY_STATUS(impl_->write_previews());
+    LUMEL_TRY_STATUS(write_report(folder() / kReportFile, report, impl_->options, diagnostics));
+    LUMEL_TRY_STATUS(
+        write_manifest(folder() / kManifestFile, {impl_->loaded.scene, impl_->charts, impl_->atlas, impl_->options,
+                                                  report, impl_->pages, impl_->geometry_hash}));
+    return impl_->output.commit();
+}
+
+}  // namespace lumel

@@ -1,0 +1,247 @@
+#include "io/manifest.h"
+
+#include <cmath>
+#include <span>
+
+#include "encode/irradiance.h"
+#include "io/image_io.h"
+#include "io/json_write.h"
+#include "io/node_class.h"
+#include "path/radiance_sums.h"
+
+namespace lumel {
+namespace {
+
+constexpr unsigned kVersion = 1;
+
+// What a kind of file holds, in words a program can compare.
+struct FileMeaning {
+    const char* name;
+    const char* units;
+    const char* encoding;
+};
+
+FileMeaning meaning_of(PageFile kind) {
+    constexpr const char* kOverPi = unit_name(LightUnit::e_over_pi);
+    switch (kind) {
+        case PageFile::lightmap: return {"lightmap", kOverPi, "irradiance"};
+        case PageFile::irradiance: return {"irradiance", unit_name(LightUnit::e), "irradiance"};
+        case PageFile::l1: return {"l1", kOverPi, "l1-normalised"};
+        case PageFile::master: return {"master", kOverPi, "l2-radiance-by-layer"};
+        case PageFile::ao: return {"ao", "1", "share-free"};
+        case PageFile::bent_normal: return {"bent_normal", "1", "mean-free-direction"};
+        case PageFile::sky_visibility: return {"sky_visibility", "1", "share-free"};
+        case PageFile::preview_atlas: return {"preview_atlas", "picture", "srgb"};
+        case PageFile::preview_charts: return {"preview_charts", "picture", "srgb"};
+        case PageFile::preview_samples: return {"preview_samples", "picture", "srgb"};
+    }
+    return {"", "", ""};
+}
+
+// JSON has no infinity.
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json page_json(const ManifestPage& page, std::uint32_t index) {
+    Json files = Json::object();
+    for (const ManifestFile& file : page.files) {
+        const FileMeaning meaning = meaning_of(file.kind);
+        files[meaning.name] = {{"file", page_file(file.kind, index)},
+                               {"units", meaning.units},
+                               {"encoding", meaning.encoding},
+                               {"type", file.type}};
+    }
+    return {{"index", index},
+            {"file", page_file(PageFile::lightmap, index)},
+            {"width", page.width},
+            {"height", page.height},
+            {"coverage", page.coverage},
+            {"display_strength", json_number(page.display_strength)},
+            {"files", std::move(files)}};
+}
+
+Json pages_json(std::span<const ManifestPage> pages) {
+    Json out = Json::array();
+    for (std::uint32_t p = 0; p < pages.size(); ++p) out.push_back(page_json(pages[p], p));
+    return out;
+}
+
+// Columns, then translation: glTF's order of a matrix without its last row.
+Json transform_json(const Affine& m) {
+    Json out = Json::array();
+    for (const Vec3 v : {m.columns[0], m.columns[1], m.columns[2], m.translation})
+        for (std::size_t i = 0; i < 3; ++i) out.push_back(json_number(v[i]));
+    return out;
+}
+
+Json instances_json(const Scene& scene, const Atlas& atlas) {
+    Json out = Json::array();
+    for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+        const Instance& instance = scene.instances[i];
+        out.push_back({{"name", instance.name},
+                       {"class", class_name(instance.node_class)},
+                       {"mesh", instance.mesh},
+                       {"transform", transform_json(instance.transform)},
+                       {"charts", {atlas.first_placement[i], atlas.first_placement[i + 1]}}});
+    }
+    return out;
+}
+
+// One array per member: hundreds of thousands of charts stay readable by machines.
+Json charts_json(const Atlas& atlas) {
+    Json page = Json::array(), scale = Json::array(), offset = Json::array();
+    for (const ChartPlacement& placement : atlas.placements) {
+        page.push_back(placement.page == kNone ? Json(nullptr) : Json(placement.page));
+        scale.push_back(json_array(placement.scale));
+        offset.push_back(json_array(placement.offset));
+    }
+    return {{"page", std::move(page)}, {"scale", std::move(scale)}, {"offset", std::move(offset)}};
+}
+
+Json layer_names(const Include& include) {
+    const LayerWeights weights = layer_weights(include);
+    Json out = Json::array();
+    for (std::size_t l = 0; l < kLayerCount; ++l)
+        if (weights[l] != 0.0f) out.push_back(kLayerNames[l]);
+    return out;
+}
+
+Json frame_json() {
+    return {{"space", "world"},
+            {"handedness", "right"},
+            {"up", "+Y"},
+            {"length", "metre"},
+            {"color", "linear Rec. 709"},
+            {"uv_origin", "top left"},
+            {"texel_centre", 0.5},
+            {"sh_basis", "real orthonormal, Condon-Shortley signs"}};
+}
+
+Json manifest_json(const ManifestInput& in) {
+    Json out;
+    out["version"] = kVersion;
+    out["generator"] = "Lumel";
+    out["source"] = std::filesystem::path(in.scene.source).filename().string();
+    out["input_hash"] = in.report.input_hash;
+    out["geometry_hash"] = in.geometry_hash;
+    out["scene"] = kSceneFile;
+    out["units"] = {{"lightmap", unit_name(LightUnit::e_over_pi)},
+                    {"irradiance", unit_name(LightUnit::e)},
+                    {"l1", unit_name(LightUnit::e_over_pi)},
+                    {"master", unit_name(LightUnit::e_over_pi)},
+                    {"scene_texture", "albedo x E/pi"}};
+    out["encoding"] = {{"lightmap", "irradiance"}, {"directional", "l1-normalised"}};
+    out["frame"] = frame_json();
+    out["layers"] = {{"included", layer_names(in.options.include)}, {"master", layer_names(Include{})}};
+    out["texels_per_metre"] = in.atlas.texels_per_metre;
+    out["scene_wide_uvs"] = in.charts.scene_wide;
+    out["figures"] = {{"estimated_nrmse", number(in.report.estimated_nrmse)},
+                      {"mean_irradiance", in.report.mean_irradiance}};
+    out["pages"] = pages_json(in.pages);
+    out["instances"] = instances_json(in.scene, in.atlas);
+    out["charts"] = charts_json(in.atlas);
+    return out;
+}
+
+Json stages_json(const BakeReport& report) {
+    Json out = Json::array();
+    for (const StageTime& stage : report.stages)
+        out.push_back({{"stage", stage.stage},
+                       {"wall_seconds", number(stage.wall_seconds)},
+                       {"cpu_seconds", number(stage.cpu_seconds)}});
+    return out;
+}
+
+Json page_reports_json(const BakeReport& report) {
+    Json out = Json::array();
+    for (const PageReport& page : report.pages)
+        out.push_back({{"page", page.page},
+                       {"width", page.width},
+                       {"height", page.height},
+                       {"texels", page.texels},
+                       {"invalid", page.invalid},
+                       {"filled", page.filled},
+                       {"dilated", page.dilated},
+                       {"coverage", page.coverage}});
+    return out;
+}
+
+Json warnings_json(const Diagnostics& diagnostics) {
+    Json out = Json::array();
+    for (const Diagnostic& item : diagnostics.all())
+        out.push_back(
+            {{"code", item.code}, {"message", item.message}, {"count", item.count}, {"examples", item.examples}});
+    return out;
+}
+
+Json options_json(const BakeOptions& options) {
+    static constexpr const char* kPresets[] = {"preview", "medium", "production"};
+    return {{"preset", kPresets[static_cast<std::size_t>(options.preset)]},
+            {"samples", options.samples != 0 ? options.samples : preset_values(options.preset).samples},
+            {"bounces", options.bounces},
+            {"seed", options.seed},
+            {"max_page", options.max_page},
+            {"dilate", options.dilate},
+            {"two_sided", options.two_sided},
+            {"stop", options.stop == StopRule::flux ? "flux" : "fixed"},
+            {"direct_scale", options.direct_scale},
+            {"indirect_scale", options.indirect_scale},
+            {"include", layer_names(options.include)},
+            {"max_memory_bytes", options.max_memory_bytes}};
+}
+
+Json report_json(const BakeReport& report, const BakeOptions& options, const Diagnostics& diagnostics) {
+    Json out;
+    out["version"] = kVersion;
+    out["input_hash"] = report.input_hash;
+    out["options"] = options_json(options);
+    out["stages"] = stages_json(report);
+    out["pages"] = page_reports_json(report);
+    out["triangles"] = report.triangles;
+    out["instances"] = report.instances;
+    out["charts"] = report.charts;
+    out["texels"] = report.texels;
+    out["invalid_texels"] = report.invalid_texels;
+    out["texels_per_metre"] = report.texels_per_metre;
+    out["samples"] = report.samples;
+    out["rays"] = report.rays;
+    out["rays_per_second"] = number(report.rays_per_second);
+    out["trace_wall_seconds"] = number(report.trace_wall_seconds);
+    out["tracer_seconds"] = number(report.tracer_seconds);
+    out["tracer"] = report.tracer;
+    out["threads"] = report.threads;
+    out["peak_memory_bytes"] = report.peak_memory_bytes;
+    out["predicted_memory_bytes"] = report.predicted_memory_bytes;
+    out["estimated_nrmse"] = number(report.estimated_nrmse);
+    out["mean_irradiance"] = report.mean_irradiance;
+    out["warnings"] = warnings_json(diagnostics);
+    return out;
+}
+
+// A file name need not be UTF-8; JSON must.
+Status write_json(const std::filesystem::path& path, const Json& json, int indent) {
+    std::string text = json.dump(indent, ' ', false, Json::error_handler_t::replace);
+    text += '\n';
+    return write_file(path, std::as_bytes(std::span(text)));
+}
+
+}  // namespace
+
+Status write_manifest(const std::filesystem::path& path, const ManifestInput& input) {
+    // Indented, the arrays of charts would take a line per number.
+    const Json json = manifest_json(input);
+    std::string text = "{";
+    for (const auto& [key, value] : json.items()) {
+        const bool small = key != "charts" && key != "instances";
+        text += text.size() > 1 ? ",\n" : "\n";
+        text += ' ' + Json(key).dump() + ": " + value.dump(small ? 1 : -1, ' ', false, Json::error_handler_t::replace);
+    }
+    text += "\n}\n";
+    return write_file(path, std::as_bytes(std::span(text)));
+}
+
+Status write_report(const std::filesystem::path& path, const BakeReport& report, const BakeOptions& options,
+                    const Diagnostics& diagnostics) {
+    return write_json(path, report_json(report, options, diagnostics), 1);
+}
+
+}  // namespace lumel

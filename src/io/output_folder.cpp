@@ -1,0 +1,185 @@
+#include "io/output_folder.h"
+
+#include <signal.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <functional>
+#include <iterator>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "base/try.h"
+#include "io/atomic_file.h"
+#include "io/page_files.h"
+
+namespace lumel {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kPartial = ".partial-";
+
+bool all_digits(std::string_view text) {
+    return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
+}
+
+// stem, digits, extension?
+bool is_numbered(std::string_view name, std::string_view stem, std::string_view extension) {
+    return name.size() > stem.size() + extension.size() && name.substr(0, stem.size()) == stem &&
+           name.substr(name.size() - extension.size()) == extension &&
+           all_digits(name.substr(stem.size(), name.size() - stem.size() - extension.size()));
+}
+
+Error folder_error(const char* doing, const fs::path& path, const std::error_code& error) {
+    return system_error(doing, path, error.value());
+}
+
+fs::path with_suffix(const fs::path& target, std::string_view suffix) {
+    std::string name = target.filename().string();
+    name += suffix;
+    return target.parent_path() / name;
+}
+
+// Partial folders of this target whose process is gone.
+void remove_stale(const fs::path& target) {
+    const std::string prefix = target.filename().string() + std::string(kPartial);
+    std::error_code error;
+    std::vector<fs::path> stale;
+    for (fs::directory_iterator at(target.parent_path(), error), end; !error && at != end; at.increment(error)) {
+        const std::string name = at->path().filename().string();
+        if (!is_numbered(name, prefix, "")) continue;
+        long process = 0;
+        std::from_chars(name.data() + prefix.size(), name.data() + name.size(), process);
+        const bool gone = process == ::getpid() || (::kill(static_cast<pid_t>(process), 0) != 0 && errno == ESRCH);
+        if (gone) stale.push_back(at->path());
+    }
+    for (const fs::path& path : stale) fs::remove_all(path, error);
+}
+
+std::vector<fs::path> entries(const fs::path& folder, std::error_code& error) {
+    std::vector<fs::path> out;
+    for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
+        out.push_back(at->path());
+    std::sort(out.begin(), out.end());
+    return out;
+}
+
+// Moves files one by one and can take all of it back.
+class Moves {
+public:
+    Status move(const fs::path& from, const fs::path& to) {
+        std::error_code error;
+        fs::rename(from, to, error);
+        if (error) return folder_error("moving into place", to, error);
+        done_.emplace_back(from, to);
+        return success();
+    }
+    void undo() noexcept {
+        std::error_code ignored;
+        for (auto at = done_.rbegin(); at != done_.rend(); ++at) fs::rename(at->second, at->first, ignored);
+        done_.clear();
+    }
+
+private:
+    std::vector<std::pair<fs::path, fs::path>> done_;
+};
+
+}  // namespace
+
+bool is_output_file(const std::string& name) {
+    if (name == kSceneFile || name == kManifestFile || name == kReportFile) return true;
+    if (is_numbered(name, kViewStem, ".png")) return true;
+    return std::any_of(std::begin(kPageFiles), std::end(kPageFiles), [&](PageFile kind) {
+        const PageFileName pattern = page_file_name(kind);
+        return is_numbered(name, pattern.stem, pattern.extension);
+    });
+}
+
+OutputFolder::OutputFolder(fs::path target, fs::path partial)
+    : target_(std::move(target)), partial_(std::move(partial)) {}
+
+OutputFolder::OutputFolder(OutputFolder&& other) noexcept
+    : target_(std::move(other.target_)), partial_(std::exchange(other.partial_, {})) {}
+
+OutputFolder& OutputFolder::operator=(OutputFolder&& other) noexcept {
+    if (this == &other) return *this;
+    discard();
+    target_ = std::move(other.target_);
+    partial_ = std::exchange(other.partial_, {});
+    return *this;
+}
+
+OutputFolder::~OutputFolder() { discard(); }
+
+void OutputFolder::discard() noexcept {
+    std::error_code ignored;
+    if (!partial_.empty()) fs::remove_all(partial_, ignored);
+    partial_.clear();
+}
+
+Result<OutputFolder> OutputFolder::create(const fs::path& target) {
+    std::error_code error;
+    // Through links to the real place, so that moving stays within one file system; without a trailing slash.
+    fs::path real = fs::weakly_canonical(fs::absolute(target, error), error);
+    if (error) return folder_error("finding the folder", target, error);
+    if (real.filename().empty()) real = real.parent_path();
+    const fs::file_status status = fs::status(real, error);
+    if (fs::exists(status) && !fs::is_directory(status))
+        return Error{ErrorCode::io, "is not a folder", target.string(), "choose another folder with -o"};
+    if (real == real.root_path())
+        return Error{ErrorCode::io, "is the root folder", target.string(), "choose another folder with -o"};
+    if (fs::exists(status) && ::access(real.c_str(), W_OK | X_OK) != 0)
+        return system_error("writing to the folder", target, errno);
+    fs::create_directories(real.parent_path(), error);
+    if (error) return folder_error("creating the folder", target, error);
+    remove_stale(real);
+    const fs::path partial = with_suffix(real, std::string(kPartial) + std::to_string(::getpid()));
+    fs::create_directory(partial, error);
+    if (error) return folder_error("creating the folder", target, error);
+    return OutputFolder(real, partial);
+}
+
+Status OutputFolder::commit() {
+    std::error_code error;
+    if (!fs::exists(target_, error)) {
+        fs::rename(partial_, target_, error);
+        if (error) return folder_error("moving into place", target_, error);
+        partial_.clear();
+        return success();
+    }
+    LUMEL_TRY_STATUS(replace_files());
+    discard();
+    return success();
+}
+
+Status OutputFolder::replace_files() {
+    std::error_code error;
+    const fs::path previous = with_suffix(target_, ".previous-" + std::to_string(::getpid()));
+    fs::create_directory(previous, error);
+    if (error) return folder_error("creating the folder", previous, error);
+    Moves moves;
+    const auto move_all = [&]() -> Status {
+        std::vector<fs::path> old = entries(target_, error);
+        std::vector<fs::path> fresh = entries(partial_, error);
+        if (error) return folder_error("listing the folder", target_, error);
+        const auto is_manifest = [](const fs::path& path) { return path.filename() == kManifestFile; };
+        std::stable_partition(old.begin(), old.end(), is_manifest);
+        std::stable_partition(fresh.begin(), fresh.end(), std::not_fn(is_manifest));
+        for (const fs::path& file : old)
+            if (is_output_file(file.filename().string()))
+                LUMEL_TRY_STATUS(moves.move(file, previous / file.filename()));
+        for (const fs::path& file : fresh) LUMEL_TRY_STATUS(moves.move(file, target_ / file.filename()));
+        return success();
+    };
+    const Status status = move_all();
+    if (!status.ok()) moves.undo();
+    fs::remove_all(previous, error);
+    return status;
+}
+
+}  // namespace lumel

@@ -1,0 +1,41 @@
+// The output folder, whole or not at all: files are written into a sibling of it and moved into place at the end.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "lumel/result.h"
+
+namespace lumel {
+
+class OutputFolder {
+public:
+    // Makes `<target>.partial-<process id>` beside the target, and parents as needed; removes those that killed
+    // processes left. Errors where the target is no folder or cannot be written to: before hours of work, not after.
+    static Result<OutputFolder> create(const std::filesystem::path& target);
+
+    // Without commit() the partial folder goes, and with it all that is in it.
+    ~OutputFolder();
+    OutputFolder(OutputFolder&& other) noexcept;
+    OutputFolder& operator=(OutputFolder&& other) noexcept;
+
+    // Where to write.
+    [[nodiscard]] const std::filesystem::path& path() const { return partial_; }
+
+    // Moves everything into place. Files of an older bake (see is_output_file) go, others in the target stay. On
+    // failure the target is as it was. A new target appears in one step; in an older one manifest.json goes first and
+    // comes last, so that a reader who finds it finds all.
+    Status commit();
+
+private:
+    OutputFolder(std::filesystem::path target, std::filesystem::path partial);
+    void discard() noexcept;
+    Status replace_files();
+
+    std::filesystem::path target_, partial_;  // partial_ is empty once moved from or committed
+};
+
+// Is this the name of a file that a bake writes?
+bool is_output_file(const std::string& name);
+
+}  // namespace lumel

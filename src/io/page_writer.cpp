@@ -1,0 +1,277 @@
+#include "io/page_writer.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+
+#include "base/try.h"
+#include "encode/l1.h"
+#include "encode/units.h"
+#include "image/tonemap.h"
+#include "io/image_io.h"
+
+namespace lumel {
+namespace {
+
+constexpr std::array<const char*, 3> kRgb{"R", "G", "B"};
+constexpr std::array<const char*, 3> kXyz{"X", "Y", "Z"};
+
+// One channel of an EXR: fills a row from the texels of that row (kNone where there is none, which is zero).
+struct Channel {
+    ExrChannelSource source;
+    std::function<void(std::span<const std::uint32_t> texels, std::span<float> out)> fill;
+};
+
+template <class Value>
+Channel channel(std::string name, ExrType type, Value value) {
+    return {{std::move(name), type}, [value](std::span<const std::uint32_t> texels, std::span<float> out) {
+                for (std::size_t x = 0; x < texels.size(); ++x) out[x] = texels[x] == kNone ? 0.0f : value(texels[x]);
+            }};
+}
+
+Status write_channels(const std::filesystem::path& path, const Lightmap& map, const std::vector<Channel>& channels) {
+    std::vector<ExrChannelSource> sources;
+    for (const Channel& c : channels) sources.push_back(c.source);
+    return write_exr(path, map.width, map.height, sources, [&](std::uint32_t y, std::size_t c, std::span<float> out) {
+        channels[c].fill(std::span(map.texel_at).subspan(std::size_t{y} * map.width, map.width), out);
+    });
+}
+
+const char* type_name(ExrType type) { return type == ExrType::half ? "half" : "float"; }
+
+// Half where its range holds the numbers: the largest below 65504, and the mean far enough above its smallest steps
+// (6e-8) that they stay below a hundred-thousandth of it.
+class HalfCheck {
+public:
+    void add(float value) {
+        const float size = std::fabs(value);
+        largest_ = std::max(largest_, size);
+        sum_ += static_cast<double>(size);
+        ++count_;
+    }
+    [[nodiscard]] ExrType type() const {
+        constexpr float kLargest = 65000.0f;
+        constexpr double kSmallestMean = 0.006;
+        const double mean = count_ == 0 ? 0.0 : sum_ / static_cast<double>(count_);
+        return largest_ < kLargest && (mean >= kSmallestMean || largest_ == 0.0f) ? ExrType::half : ExrType::full;
+    }
+
+private:
+    float largest_ = 0.0f;
+    double sum_ = 0.0;
+    std::uint64_t count_ = 0;
+};
+
+class PageWriter {
+public:
+    PageWriter(const std::filesystem::path& folder, const Lightmap& map, const LayerWeights& weights)
+        : folder_(folder), map_(map), weights_(weights) {}
+
+    Result<ManifestPage> write() {
+        out_.width = map_.width;
+        out_.height = map_.height;
+        const auto baked = std::count(map_.coverage.begin(), map_.coverage.end(), Coverage::baked);
+        out_.coverage = static_cast<double>(baked) / (static_cast<double>(map_.width) * map_.height);
+        LUMEL_TRY_STATUS(write_lightmap());
+        LUMEL_TRY_STATUS(write_irradiance());
+        LUMEL_TRY_STATUS(write_l1());
+        LUMEL_TRY_STATUS(write_master());
+        LUMEL_TRY_STATUS(write_grey(PageFile::ao, map_.texels.ambient_occlusion));
+        LUMEL_TRY_STATUS(write_bent_normal());
+        LUMEL_TRY_STATUS(write_grey(PageFile::sky_visibility, map_.texels.sky_visibility));
+        return std::move(out_);
+    }
+
+private:
+    [[nodiscard]] std::filesystem::path file(PageFile kind) const { return folder_ / page_file(kind, map_.page); }
+
+    [[nodiscard]] Vec3 irradiance(std::size_t texel) const {
+        const auto& layers = map_.texels.layers[texel];
+        return sum_layers(weights_, [&](std::size_t l) { return layers[l].irradiance; });
+    }
+    [[nodiscard]] L1Texel l1(std::size_t texel) const {
+        const auto& layers = map_.texels.layers[texel];
+        RadianceSh<Vec3, 4> sum;
+        for (std::size_t i = 0; i < 4; ++i)
+            sum.c[i] = sum_layers(weights_, [&](std::size_t l) { return layers[l].sh[i]; });
+        return encode_l1(sum);
+    }
+
+    Status write_file(PageFile kind, std::string type, const std::vector<Channel>& channels) {
+        out_.files.push_back({kind, std::move(type)});
+        return write_channels(file(kind), map_, channels);
+    }
+
+    Status write_irradiance_in(PageFile kind, LightUnit unit, ExrType type) {
+        std::vector<Channel> channels;
+        for (std::size_t c = 0; c < 3; ++c)
+            channels.push_back(channel(
+                kRgb[c], type, [this, c, unit](std::size_t t) { return to_file_unit(irradiance(t)[c], unit); }));
+        return write_file(kind, type_name(type), channels);
+    }
+
+    Status write_lightmap() { return write_irradiance_in(PageFile::lightmap, LightUnit::e_over_pi, ExrType::full); }
+
+    Status write_irradiance() {
+        HalfCheck check;
+        for (std::size_t t = 0; t < map_.texels.size(); ++t)
+            for (std::size_t c = 0; c < 3; ++c) check.add(to_file_unit(irradiance(t)[c], LightUnit::e));
+        return write_irradiance_in(PageFile::irradiance, LightUnit::e, check.type());
+    }
+
+    // L0.R .. L0.B, and per channel the normalised linear band as a world-space vector: L1n.R.X ..
+    Status write_l1() {
+        std::vector<L1Texel> texels(map_.texels.size());
+        HalfCheck check;
+        for (std::size_t t = 0; t < texels.size(); ++t) {
+            texels[t] = l1(t);
+            for (std::size_t c = 0; c < 3; ++c) check.add(texels[t].l0[c]);
+        }
+        std::vector<Channel> channels;
+        for (std::size_t c = 0; c < 3; ++c) {
+            channels.push_back(channel(std::string("L0.") + kRgb[c], check.type(),
+                                       [&texels, c](std::size_t t) { return texels[t].l0[c]; }));
+            for (std::size_t k = 0; k < 3; ++k)
+                channels.push_back(channel(std::string("L1n.") + kRgb[c] + "." + kXyz[k], ExrType::half,
+                                           [&texels, c, k](std::size_t t) { return texels[t].l1n[c][k]; }));
+        }
+        return write_file(PageFile::l1, check.type() == ExrType::half ? "half" : "half+float", channels);
+    }
+
+    [[nodiscard]] ExrType sh_type() const {
+        HalfCheck check;
+        float largest = 0.0f;  // of all coefficients; the mean is that of the constant ones
+        for (const auto& layers : map_.texels.layers) {
+            Vec3 constant{};
+            for (const LayerMoments& layer : layers) {
+                constant += layer.sh[0];
+                for (const Vec3& v : layer.sh) largest = std::max(largest, max_component(max(v, -v)));
+            }
+            for (std::size_t c = 0; c < 3; ++c) check.add(constant[c]);
+        }
+        check.add(largest);
+        return check.type();
+    }
+
+    void add_layer(std::size_t l, ExrType type, std::vector<Channel>& channels) const {
+        const std::string layer = kLayerNames[l];
+        const RadianceSums& texels = map_.texels;
+        for (std::size_t i = 0; i < kShCoefficients; ++i)
+            for (std::size_t c = 0; c < 3; ++c)
+                channels.push_back(channel(layer + ".L" + std::to_string(i) + "." + kRgb[c], type,
+                                           [&texels, l, i, c](std::size_t t) { return texels.layers[t][l].sh[i][c]; }));
+        for (std::size_t c = 0; c < 3; ++c)
+            channels.push_back(channel(layer + ".I." + kRgb[c], ExrType::full, [&texels, l, c](std::size_t t) {
+                return to_file_unit(texels.layers[t][l].irradiance[c], LightUnit::e_over_pi);
+            }));
+    }
+
+    Status write_master() {
+        const ExrType type = sh_type();
+        const RadianceSums& texels = map_.texels;
+        std::vector<Channel> channels;
+        for (std::size_t l = 0; l < kLayerCount; ++l) add_layer(l, type, channels);
+        channels.push_back(
+            channel("coverage", ExrType::half, [this](std::size_t t) { return static_cast<float>(map_.coverage[t]); }));
+        channels.push_back(
+            channel("count", ExrType::full, [&texels](std::size_t t) { return static_cast<float>(texels.count[t]); }));
+        for (std::size_t c = 0; c < 3; ++c)
+            channels.push_back(channel(std::string("variance.") + kRgb[c], ExrType::full,
+                                       [&texels, c](std::size_t t) { return texels.variance[t][c]; }));
+        return write_file(PageFile::master, type == ExrType::half ? "half+float" : "float", channels);
+    }
+
+    Status write_bent_normal() {
+        std::vector<Channel> channels;
+        for (std::size_t c = 0; c < 3; ++c)
+            channels.push_back(
+                channel(kRgb[c], ExrType::half, [this, c](std::size_t t) { return map_.texels.bent_normal[t][c]; }));
+        return write_file(PageFile::bent_normal, "half", channels);
+    }
+
+    // 0..1 as 0..255, linear.
+    Status write_grey(PageFile kind, const std::vector<float>& values) {
+        std::vector<std::uint8_t> pixels(map_.texel_at.size());
+        for (std::size_t i = 0; i < pixels.size(); ++i)
+            if (const std::uint32_t t = map_.texel_at[i]; t != kNone)
+                pixels[i] = static_cast<std::uint8_t>(std::clamp(values[t], 0.0f, 1.0f) * 255.0f + 0.5f);
+        out_.files.push_back({kind, "8-bit"});
+        return write_png(file(kind), map_.width, map_.height, 1, pixels);
+    }
+
+    const std::filesystem::path& folder_;
+    const Lightmap& map_;
+    const LayerWeights& weights_;
+    ManifestPage out_;
+};
+
+// The brightest reflected light but for the last thousandth: fireflies and lamps do not set the scale of 8 bits.
+float display_strength(const std::vector<Vec3>& reflected) {
+    constexpr double kFraction = 0.999;
+    std::vector<float> peaks;
+    peaks.reserve(reflected.size());
+    for (const Vec3& v : reflected)
+        if (const float peak = max_component(v); peak > 0.0f && std::isfinite(peak)) peaks.push_back(peak);
+    if (peaks.empty()) return 1.0f;
+    const auto at = peaks.begin() + static_cast<std::ptrdiff_t>(kFraction * static_cast<double>(peaks.size() - 1));
+    std::nth_element(peaks.begin(), at, peaks.end());
+    return *at;
+}
+
+}  // namespace
+
+Result<ManifestPage> write_page_files(const std::filesystem::path& folder, const Lightmap& map,
+                                      const LayerWeights& weights) {
+    return PageWriter(folder, map, weights).write();
+}
+
+LitTexture lit_texture(const Lightmap& map, const LayerWeights& weights) {
+    std::vector<Vec3> light(map.texels.size());
+    for (std::size_t t = 0; t < light.size(); ++t) {
+        const auto& layers = map.texels.layers[t];
+        const Vec3 irradiance = sum_layers(weights, [&](std::size_t l) { return layers[l].irradiance; });
+        light[t] = map.surface.albedo[t] * to_file_unit(irradiance, LightUnit::e_over_pi);
+    }
+    LitTexture out;
+    out.strength = display_strength(light);
+    std::vector<std::uint8_t> pixels(map.texel_at.size() * 3);
+    for (std::size_t i = 0; i < map.texel_at.size(); ++i) {
+        const std::uint32_t t = map.texel_at[i];
+        if (t == kNone) continue;
+        const Vec3 value = (light[t] + map.surface.emission[t]) / out.strength;
+        const Vec3 shown = value / std::max(1.0f, max_component(value));
+        for (std::size_t c = 0; c < 3; ++c) pixels[3 * i + c] = srgb8(shown[c]);
+    }
+    out.png = encode_png(map.width, map.height, 3, pixels);
+    return out;
+}
+
+PagePreview preview_of(const Lightmap& map, const LayerWeights& weights, std::uint32_t max_edge) {
+    const std::uint32_t block = (std::max(map.width, map.height) + max_edge - 1) / max_edge;
+    const std::uint32_t width = (map.width + block - 1) / block, height = (map.height + block - 1) / block;
+    PagePreview out{Image(width, height, 3), Image(width, height, 1), {}};
+    std::vector<std::uint32_t> counts(std::size_t{width} * height);
+    for (std::uint32_t y = 0; y < map.height; ++y)
+        for (std::uint32_t x = 0; x < map.width; ++x) {
+            const std::uint32_t t = map.texel_at[std::size_t{y} * map.width + x];
+            if (t == kNone) continue;
+            const auto& layers = map.texels.layers[t];
+            const Vec3 light = sum_layers(weights, [&](std::size_t l) { return layers[l].irradiance; });
+            float* pixel = out.irradiance.at(x / block, y / block);
+            for (std::size_t c = 0; c < 3; ++c) pixel[c] += light[c];
+            *out.samples.at(x / block, y / block) += static_cast<float>(map.texels.count[t]);
+            ++counts[std::size_t{y / block} * width + x / block];
+        }
+    out.covered.resize(counts.size());
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+        if (counts[i] == 0) continue;
+        out.covered[i] = 1;
+        const float scale = 1.0f / static_cast<float>(counts[i]);
+        for (std::size_t c = 0; c < 3; ++c) out.irradiance.data[3 * i + c] *= scale;
+        out.samples.data[i] *= scale;
+    }
+    return out;
+}
+
+}  // namespace lumel
