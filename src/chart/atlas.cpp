@@ -65,7 +65,9 @@ private:
         const SizeLimit limit{options_.max_page, options_.max_page};
         density_ = options_.texels_per_metre;
         if (!(density_ > 0.0)) {
-            LUMEL_TRY(density_, solve_density(charts_, instances_, options_.texel_budget, limit, context_));
+            // A budget that the smallest charts eat by more than half is too small to be meant.
+            const double budget = std::max(options_.texel_budget, 2.0 * least_texels(instances_));
+            LUMEL_TRY(density_, solve_density(charts_, instances_, budget, limit, context_));
         }
         if (!draw(limit)) return cancelled_error();
         packing_ = pack(sized_.masks, items(), options_.max_page, cancelled_);
@@ -86,11 +88,10 @@ private:
             return fits ? success() : no_room();
         }
         const double page = static_cast<double>(limit.width) * limit.height;
-        for (double share = 0.99; share > 1e-6; share *= kStep) {
-            LUMEL_TRY(density_, solve_density(charts_, instances_, share * page, limit, context_));
+        for (double texels = 0.99 * page; texels > least_texels(instances_); texels *= kStep) {
+            LUMEL_TRY(density_, solve_density(charts_, instances_, texels, limit, context_));
             LUMEL_TRY(const bool fits, try_resolution(limit));
             if (fits) return success();
-            if (sized_.used == least_texels()) break;
         }
         return no_room();
     }
@@ -103,8 +104,6 @@ private:
         if (packing_.complete) report_clamped();
         return packing_.complete;
     }
-
-    [[nodiscard]] std::uint64_t least_texels() const { return 4 * std::uint64_t{instances_.size()}; }
 
     [[nodiscard]] Error no_room() const {
         const std::string size =

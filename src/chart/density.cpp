@@ -179,7 +179,7 @@ Result<double> solve_density(const ChartSet& charts, const std::vector<ChartInst
                              SizeLimit limit, Context& context) {
     const double unit = texels_at_unit_density(charts, instances);
     if (!(unit > 0.0)) return 1.0;
-    const double target = std::max(budget, 2.0 * 4.0 * static_cast<double>(instances.size()));
+    const double target = std::max(budget, least_texels(instances));
     // Borders only add to the area, up to the rounding of sizes: twice its density is above the answer.
     double low = 0.0, high = 2.0 * std::sqrt(target / unit), density = 0.25 * high;
     for (int step = 0; step < 24; ++step) {

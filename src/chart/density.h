@@ -42,6 +42,11 @@ std::optional<SizedCharts> size_charts(const ChartSet& charts, const std::vector
 Result<double> solve_density(const ChartSet& charts, const std::vector<ChartInstance>& instances, double budget,
                              SizeLimit limit, Context& context);
 
+// Every chart 2 x 2.
+inline double least_texels(const std::vector<ChartInstance>& instances) {
+    return 4.0 * static_cast<double>(instances.size());
+}
+
 // World area over all chart instances, with the rates applied: texels at one texel per metre.
 double texels_at_unit_density(const ChartSet& charts, const std::vector<ChartInstance>& instances);
 

@@ -56,6 +56,7 @@ PageBits::Spot PageBits::find(const ChartMask& mask, std::uint32_t start_row, st
 }
 
 void PageBits::set(const ChartMask& mask, std::uint32_t x, std::uint32_t y) {
+    grow(y + mask.height);
     const std::uint32_t shift = x % 64;
     std::uint64_t* page = &bits_[std::size_t{y} * words_per_row_ + x / 64];
     const std::uint64_t* row = mask.bits.data();

@@ -16,12 +16,12 @@
 
 namespace lumel {
 
+// Cosines of angles.
 struct SegmentOptions {
-    double cone_cos = 0.34202;  // cosine of the largest half angle of a cluster's normals: 70 degrees
-    double hard_crease_cos =
-        0.8660254037844387;  // an edge whose vertex normals differ cuts above this angle: 30 degrees
-    double soft_crease_cos = 0.2588190451025207;  // an edge with common vertex normals cuts above this one: 75 degrees
-    double planar_cos = 0.99998;  // normals this near to the first triangle's are one plane: 0.36 degrees
+    double cone_cos = 0.34202;           // 70 degrees: the largest half angle of a cluster's normals
+    double hard_crease_cos = 0.8660254;  // 30 degrees: sharper edges cut where the vertex normals of their sides differ
+    double soft_crease_cos = 0.2588190;  // 75 degrees: sharper edges cut even where the vertex normals agree
+    double planar_cos = 0.99998;         // 0.36 degrees: normals this near to the first triangle's are one plane
 };
 
 // Edge-connected triangle lists, ascending, ordered by their first triangle. Zero-area triangles are in none of them.

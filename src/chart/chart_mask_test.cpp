@@ -1,0 +1,89 @@
+#include "chart/chart_mask.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "support/chart_checker.h"
+#include "support/statistics.h"
+
+namespace lumel {
+namespace {
+
+ChartMask mask_of(const std::vector<UvTriangle>& uv, Vec2 low, Vec2 high, std::uint32_t width, std::uint32_t height) {
+    std::vector<std::uint32_t> all(uv.size());
+    std::iota(all.begin(), all.end(), 0u);
+    return make_mask(all, uv, low, high, width, height);
+}
+
+std::string drawing(const ChartMask& mask) {
+    std::string out;
+    for (std::uint32_t y = 0; y < mask.height; ++y) {
+        for (std::uint32_t x = 0; x < mask.width; ++x) out += mask.get(x, y) ? '#' : '.';
+        out += '\n';
+    }
+    return out;
+}
+
+// A rectangle whose box is fitted to texel centres takes its steps plus one in each direction, and all of them.
+TEST(ChartMask, RectanglesTakeNoTexelTooMany) {
+    const std::vector<UvTriangle> quad{{{{1, 2}, {4, 2}, {4, 4}}}, {{{1, 2}, {4, 4}, {1, 4}}}};
+    for (const auto& [w, h] : {std::pair{2u, 2u}, {4u, 3u}, {64u, 2u}, {65u, 7u}, {200u, 130u}}) {
+        const ChartMask mask = mask_of(quad, {1, 2}, {4, 4}, w, h);
+        EXPECT_EQ(mask.used, std::uint64_t{w} * h) << w << "x" << h;
+    }
+}
+
+// By hand: corners on the centres of texels (0,0), (4,0) and (0,4), in steps: (0,0), (4,0), (0,4). Box (i, j) reaches
+// from i - 1 to i + 1; its corner nearest to the origin is (i - 1, j - 1), below the long side x + y = 4 while
+// i + j < 6.
+TEST(ChartMask, TriangleByHand) {
+    const ChartMask mask = mask_of({{{{0, 0}, {1, 0}, {0, 1}}}}, {0, 0}, {1, 1}, 5, 5);
+    EXPECT_EQ(drawing(mask), std::string("#####\n#####\n####.\n###..\n##...\n")) << drawing(mask);
+    for (std::uint32_t y = 0; y < 5; ++y)
+        for (std::uint32_t x = 0; x < 5; ++x) EXPECT_EQ(mask.get(x, y), x + y < 6) << x << " " << y;
+}
+
+// Random triangles against the separating axes of the checker.
+TEST(ChartMask, AgreesWithBoxTest) {
+    test::Random random(11);
+    std::uint64_t used = 0, doubtful = 0;
+    for (int n = 0; n < 300; ++n) {
+        const std::uint32_t width = 2 + random.bits() % 90, height = 2 + random.bits() % 20;
+        UvTriangle t;
+        for (Vec2& p : t) p = random.pair();
+        Vec2 low = t[0], high = t[0];
+        for (const Vec2 p : t) {
+            low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+            high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+        }
+        const ChartMask mask = mask_of({t}, low, high, width, height);
+        const TexelMap map = fit_to_centres(low, high, width, height, 0, 0);
+        test::detail::Corners corners;
+        for (std::size_t k = 0; k < 3; ++k)
+            corners[k] = {t[k].x * map.scale_x + map.offset_x, t[k].y * map.scale_y + map.offset_y};
+        for (std::uint32_t y = 0; y < height; ++y)
+            for (std::uint32_t x = 0; x < width; ++x) {
+                // The mask leaves out what is touched by less than 1e-4 of a texel: neither answer is wrong there.
+                const bool surely = test::detail::meets_square(corners, {x + 0.5, y + 0.5}, 1.0 - 2e-4);
+                const bool maybe = test::detail::meets_square(corners, {x + 0.5, y + 0.5}, 1.0 + 2e-4);
+                if (surely == maybe) {
+                    EXPECT_EQ(mask.get(x, y), surely) << n << ": " << x << " " << y;
+                }
+                doubtful += surely != maybe;
+                used += mask.get(x, y);
+            }
+    }
+    EXPECT_GT(used, 50000u);
+    EXPECT_LT(doubtful, used / 50);
+}
+
+// Charts without width or height still own 2 x 2 texels.
+TEST(ChartMask, LinesAndPointsHaveTexels) {
+    EXPECT_EQ(mask_of({{{{1, 1}, {2, 1}, {3, 1}}}}, {1, 1}, {3, 1}, 9, 2).used, 9u);
+    EXPECT_EQ(mask_of({{{{1, 1}, {1, 1}, {1, 1}}}}, {1, 1}, {1, 1}, 2, 2).used, 1u);
+}
+
+}  // namespace
+}  // namespace lumel
