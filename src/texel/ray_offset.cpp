@@ -1,8 +1,8 @@
 // Based on: Pharr, Jakob, Humphreys, "Physically Based Rendering" 4th ed., section 6.8 (bounds of rounding errors,
 // points rounded away from the surface); Woop, Benthin, Wald 2013, "Watertight Ray/Triangle Intersection" (edges
 // relative to the ray's origin); Hanika 2021, "Hacking the Shadow Terminator", Ray Tracing Gems II, chapter 4.
-// Different here: the tracer's own error is part of the bound. Without it, large triangles near the origin of the
-// coordinates shade themselves.
+// Different here: the tracer's own error is part of the bound; without it, large triangles near the origin of the
+// coordinates shade themselves. And the smooth position takes half of Hanika's step, see there.
 #include "texel/ray_offset.h"
 
 #include <algorithm>
@@ -50,6 +50,9 @@ Vec3 smooth_position(const WorldGeometry& geometry, std::uint32_t triangle, floa
     const Vec3 p = geometry.position(triangle, b1, b2);
     const WorldTriangle& t = geometry.triangles[triangle];
     if ((t.flags & kCurved) == 0) return p;
+    // A chord's point is as far below the arc as the arc is below the tangent plane: the height below the plane counts
+    // twice. The full step would leave a sphere by as much as the facets are inside it.
+    constexpr float kStep = 0.5f;
     const float side = back_side ? -1.0f : 1.0f;
     const Vec3 face_normal = geometry.geometric_normal(triangle) * side;
     const std::array<float, 3> weights{1.0f - b1 - b2, b1, b2};
@@ -58,7 +61,7 @@ Vec3 smooth_position(const WorldGeometry& geometry, std::uint32_t triangle, floa
         const Vec3 n = geometry.normals[t.vertices[i]] * side;
         const float height = dot(p - geometry.positions[t.vertices[i]], n);  // below the tangent plane: negative
         // A normal that points behind the face would move the point through it.
-        if (height < 0.0f && dot(n, face_normal) > 0.0f) move -= n * (weights[i] * height);
+        if (height < 0.0f && dot(n, face_normal) > 0.0f) move -= n * (kStep * weights[i] * height);
     }
     return p + move;
 }

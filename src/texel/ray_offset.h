@@ -21,8 +21,9 @@ float tracer_error(const WorldGeometry& geometry, std::uint32_t triangle);
 // nearer than twice the offset may be missed.
 Vec3 offset_origin(const WorldGeometry& geometry, std::uint32_t triangle, float b1, float b2, Vec3 side_normal);
 
-// The smooth position that only moves outward: P - sum_i b_i min(0, (P - V_i).n_i) n_i, for the front side; equal to P
-// on flat triangles. Rounds off convex low-poly meshes, leaves concave ones where they are.
+// The smooth position that only moves outward: P - 1/2 sum_i b_i min(0, (P - V_i).n_i) n_i, for the front side; equal
+// to P on flat triangles. On a convex mesh it is the point of the curved surface that the vertex normals describe, from
+// where no facet of the mesh reaches into the hemisphere of the vertex normal; concave ones stay where they are.
 Vec3 smooth_position(const WorldGeometry& geometry, std::uint32_t triangle, float b1, float b2, bool back_side);
 
 }  // namespace lumel
