@@ -49,7 +49,8 @@ struct BakeReport {
     unsigned threads = 0;
 };
 
-// Receives pages in order as they are done, so that a level larger than memory can be streamed to disk.
+// Receives pages in order as they are done, so that a level larger than memory can be streamed to disk. A member left
+// empty is not called.
 struct BakeSink {
     // After charts and atlas, before any page.
     std::function<Status(const WorldGeometry&, const ChartSet&, const Atlas&)> layout;

@@ -203,7 +203,7 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
     if (atlas.pages.empty())
         return Error{ErrorCode::invalid_input, "no surface of the scene gets lightmap texels", scene.source,
                      "every node is of another class than lightmap: see lumel info"};
-    LUMEL_TRY_STATUS(sink.layout(geometry, charts, atlas));
+    if (sink.layout) LUMEL_TRY_STATUS(sink.layout(geometry, charts, atlas));
 
     std::unique_ptr<Tracer> tracer;
     {
@@ -240,7 +240,7 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
         totals.add(map);
         texels = {};
         const StageTimer timer(report, "write");
-        LUMEL_TRY_STATUS(sink.page(map));
+        if (sink.page) LUMEL_TRY_STATUS(sink.page(map));
     }
 
     for (const PageReport& page : report.pages) {
