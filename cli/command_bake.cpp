@@ -1,0 +1,179 @@
+// lumel bake: the main job.
+#include <cstdio>
+#include <filesystem>
+
+#include "base/try.h"
+#include "command.h"
+#include "image/tonemap.h"
+#include "io/bake_writer.h"
+#include "io/baked.h"
+#include "io/image_io.h"
+#include "load.h"
+#include "render/picture.h"
+
+namespace lumel::cli {
+namespace {
+
+struct Options {
+    std::string scene, output, resolution, max_memory, progress;
+    std::string preset = "medium", uv1 = "automatic", stop = "fixed";
+    std::uint32_t views = 2;
+    BakeOptions values;
+    LightOptions light;
+};
+
+constexpr PictureOptions kViewPicture{384, 216, 32};
+constexpr std::uint32_t kViewGutter = 4;  // pixels between truth and bake
+
+Result<BakeOptions> read_options(const Options& options) {
+    BakeOptions out = options.values;
+    LUMEL_TRY_STATUS(options.light.read(out));
+    if (!options.resolution.empty()) {
+        LUMEL_TRY(const Size size, parse_size(options.resolution, "--resolution"));
+        out.resolution_width = size.width;
+        out.resolution_height = size.height;
+    }
+    if (!options.max_memory.empty()) {
+        LUMEL_TRY(out.max_memory_bytes, parse_bytes(options.max_memory, "--max-memory"));
+    }
+    out.preset = options.preset == "preview"  ? Preset::preview
+                 : options.preset == "medium" ? Preset::medium
+                                              : Preset::production;
+    out.uv1 = options.uv1 == "scene"    ? Uv1Choice::scene
+              : options.uv1 == "mesh"   ? Uv1Choice::mesh
+              : options.uv1 == "ignore" ? Uv1Choice::ignore
+                                        : Uv1Choice::automatic;
+    out.stop = options.stop == "flux" ? StopRule::flux : StopRule::fixed;
+    return out;
+}
+
+// Truth on the left, the bake on the right, one exposure.
+std::vector<std::uint8_t> side_by_side(const Image& truth, const Image& baked) {
+    const float exposure = auto_exposure(truth);
+    const auto left = tonemap(truth, exposure), right = tonemap(baked, exposure);
+    const std::size_t row = std::size_t{truth.width} * 3;
+    std::vector<std::uint8_t> out;
+    for (std::size_t y = 0; y < truth.height; ++y) {
+        out.insert(out.end(), left.begin() + static_cast<std::ptrdiff_t>(y * row),
+                   left.begin() + static_cast<std::ptrdiff_t>((y + 1) * row));
+        out.insert(out.end(), std::size_t{kViewGutter} * 3, std::uint8_t{255});
+        out.insert(out.end(), right.begin() + static_cast<std::ptrdiff_t>(y * row),
+                   right.begin() + static_cast<std::ptrdiff_t>((y + 1) * row));
+    }
+    return out;
+}
+
+// preview_view_<k>.png from the files just written: what the pictures show is what a user gets.
+Status write_views(const BakeWriter& writer, const Scene& scene, const BakeOptions& options, std::uint32_t count,
+                   Context& context) {
+    if (count == 0) return success();
+    LUMEL_TRY(const WorldGeometry geometry, flatten(scene, context));
+    const SurfaceReader surfaces(scene, geometry);
+    const LightSet lights(scene, geometry, surfaces);
+    LUMEL_TRY(const std::unique_ptr<Tracer> tracer, make_embree_tracer(geometry, surfaces, context));
+    const Transport transport{scene, geometry, surfaces, lights, *tracer};
+    LUMEL_TRY(const BakedLighting baked, read_baked(writer.folder(), scene, geometry));
+    const BakedIrradiance lookup = [&](std::uint32_t triangle, float b1, float b2) {
+        return baked.irradiance(triangle, b1, b2);
+    };
+    PathOptions path;
+    path.bounces = options.bounces;
+    path.seed = options.seed;
+    LUMEL_TRY(const std::vector<Camera> views, choose_views(transport, count, context));
+    for (std::size_t k = 0; k < views.size(); ++k) {
+        LUMEL_TRY(const Image truth, render_picture(transport, path, views[k], kViewPicture, nullptr, context));
+        LUMEL_TRY(const Image lit, render_picture(transport, path, views[k], kViewPicture, &lookup, context));
+        LUMEL_TRY_STATUS(write_png(writer.folder() / ("preview_view_" + std::to_string(k) + ".png"),
+                                   2 * kViewPicture.width + kViewGutter, kViewPicture.height, 3,
+                                   side_by_side(truth, lit)));
+    }
+    return success();
+}
+
+void print_summary(const BakeReport& report, const std::string& folder) {
+    std::printf("%s: %llu texels on %zu page%s, %.1f texels/m, %llu charts\n", folder.c_str(),
+                static_cast<unsigned long long>(report.texels), report.pages.size(),
+                report.pages.size() == 1 ? "" : "s", report.texels_per_metre,
+                static_cast<unsigned long long>(report.charts));
+    std::printf(
+        "%.1f Mrays at %.2f Mrays/s, %.0f %% of thread time in %s; estimated nRMSE %.4f; peak memory %llu MB\n",
+        1e-6 * static_cast<double>(report.rays), 1e-6 * report.rays_per_second,
+        report.trace_wall_seconds > 0.0 ? 100.0 * report.tracer_seconds / (report.trace_wall_seconds * report.threads)
+                                        : 0.0,
+        report.tracer.c_str(), report.estimated_nrmse, static_cast<unsigned long long>(report.peak_memory_bytes >> 20));
+}
+
+Status run(const Options& options) {
+    LUMEL_TRY(BakeOptions bake_options, read_options(options));
+    RunContext run_context(bake_options.threads, options.progress);
+    Context& context = run_context.get();
+    LUMEL_TRY(const LoadedScene loaded, load_lit_scene(options.scene, bake_options, context));
+    LUMEL_TRY(BakeWriter writer, BakeWriter::create(options.output, loaded, bake_options));
+    BakeSink sink;
+    sink.layout = [&](const WorldGeometry& geometry, const ChartSet& charts, const Atlas& atlas) {
+        return writer.layout(geometry, charts, atlas);
+    };
+    sink.page = [&](const Lightmap& page) { return writer.page(page); };
+    LUMEL_TRY(const BakeReport report, bake(loaded.scene, bake_options, sink, context));
+    LUMEL_TRY_STATUS(writer.write_scene());
+    LUMEL_TRY_STATUS(write_views(writer, loaded.scene, bake_options, options.views, context));
+    LUMEL_TRY_STATUS(writer.finish(report, context.diagnostics));
+    run_context.finish();
+    print_summary(report, options.output);
+    return success();
+}
+
+}  // namespace
+
+Run add_bake(CLI::App& app) {
+    auto options = std::make_shared<Options>();
+    BakeOptions& values = options->values;
+    app.add_option("SCENE", options->scene, "glTF scene: .glb or .gltf")->required();
+    app.add_option("-o,--output", options->output, "Output folder; appears whole or not at all")->required();
+    app.add_option("--preset", options->preset,
+                   "preview, medium or production: texels and samples where not asked otherwise")
+        ->check(CLI::IsMember({"preview", "medium", "production"}));
+    app.add_option("--views", options->views, "Camera views rendered beside the truth")->check(CLI::Range(0u, 16u));
+
+    const std::string texels = "Texels";
+    app.add_option("--texels-per-metre", values.texels_per_metre, "Density (0: from the preset's texel budget)")
+        ->check(CLI::Range(0.0, 1e6))
+        ->group(texels);
+    app.add_option("--resolution", options->resolution, "WxH of the one page")->group(texels);
+    app.add_option("--max-page", values.max_page, "Largest page edge in texels")
+        ->check(CLI::Range(64u, 16384u))
+        ->group(texels);
+    app.add_option("--uv1", options->uv1,
+                   "TEXCOORD_1: automatic, scene (keep as one atlas), mesh (keep charts, repack), ignore")
+        ->check(CLI::IsMember({"automatic", "scene", "mesh", "ignore"}))
+        ->group(texels);
+    app.add_option("--dilate", values.dilate, "Rings of texels filled around charts")
+        ->check(CLI::Range(0u, 64u))
+        ->group(texels);
+
+    const std::string transport = "Transport";
+    app.add_option("--ao-distance", values.ao_distance,
+                   "Reach of ambient occlusion in metres (0: a tenth of the diagonal)")
+        ->check(CLI::NonNegativeNumber)
+        ->group(transport);
+    app.add_option(
+           "--stop", options->stop,
+           "fixed: every texel takes --samples; flux: each stops at --error (published rule, biased on rare light)")
+        ->check(CLI::IsMember({"fixed", "flux"}))
+        ->group(transport);
+    app.add_option("--error", values.error, "Relative error at which --stop flux stops")
+        ->check(CLI::Range(1e-6, 10.0))
+        ->group(transport);
+    app.add_option("--confidence", values.confidence, "Confidence of --error")
+        ->check(CLI::Range(0.5, 0.9999))
+        ->group(transport);
+    app.add_option("--max-memory", options->max_memory, "Ceiling such as 4G; pages shrink to fit it");
+    options->light.declare(app);
+    declare_progress(app, options->progress);
+    return [options] {
+        const Status status = run(*options);
+        return status.ok() ? static_cast<int>(kDone) : fail(status.error());
+    };
+}
+
+}  // namespace lumel::cli
