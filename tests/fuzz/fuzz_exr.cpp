@@ -1,0 +1,38 @@
+// Any bytes as OpenEXR, read as a picture and channel by channel.
+#include <unistd.h>
+
+#include "base/check.h"
+#include "fuzz/seed_corpus.h"
+#include "io/image_codecs.h"
+
+namespace {
+
+std::vector<std::byte> seed(const std::vector<lumel::ExrChannelSource>& channels) {
+    const auto path =
+        std::filesystem::temp_directory_path() / ("lumel-fuzz-seed-" + std::to_string(::getpid()) + ".exr");
+    (void)lumel::write_exr(path, 5, 3, channels, [](std::uint32_t y, std::size_t c, std::span<float> out) {
+        for (std::size_t x = 0; x < out.size(); ++x) out[x] = static_cast<float>(x + 10 * y + 100 * c);
+    });
+    auto bytes = lumel::read_file(path, 1 << 20);
+    std::error_code ignored;
+    std::filesystem::remove(path, ignored);
+    return bytes.ok() ? std::move(bytes).value() : std::vector<std::byte>{};
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
+    lumel::fuzz::seed_corpus(*argc, *argv,
+                             {seed({{"R"}, {"G"}, {"B"}}), seed({{"depth", lumel::ExrType::half}}),
+                              seed({{"sky.L0.R"}, {"sky.L0.G"}, {"sky.L0.B"}, {"count", lumel::ExrType::half}})});
+    return 0;
+}
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const auto bytes = lumel::fuzz::as_span(data, size);
+    const auto image = lumel::decode_exr(bytes, "fuzz");
+    if (image.ok()) LUMEL_CHECK(image->data.size() == std::size_t{image->width} * image->height * image->channels);
+    const auto channels = lumel::decode_exr_channels(bytes, {}, "fuzz");
+    if (channels.ok()) LUMEL_CHECK(channels->planes.size() == channels->names.size());
+    return 0;
+}
