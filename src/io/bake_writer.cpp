@@ -84,7 +84,7 @@ struct BakeWriter::Impl {
     Status write_chart_preview(std::uint32_t page) {
         const AtlasPage& size = atlas.pages[page];
         const PagePreview& preview = previews[page];
-        const auto rgb = colour_ids(chart_ids(loaded.scene, charts, atlas, page));
+        const auto rgb = color_ids(chart_ids(loaded.scene, charts, atlas, page));
         return write_png(file(PageFile::preview_charts, page), preview.irradiance.width, preview.irradiance.height, 3,
                          thin_out(rgb, size.width, size.height, preview));
     }
