@@ -22,16 +22,19 @@ namespace {
 
 constexpr std::uint32_t kPreviewEdge = 1024;
 
-// Every block-th pixel of an RGB picture.
-std::vector<std::uint8_t> thin_out(const std::vector<std::uint8_t>& rgb, std::uint32_t width, std::uint32_t height,
-                                   const PagePreview& like) {
-    const std::uint32_t block = (std::max(width, height) + kPreviewEdge - 1) / kPreviewEdge;
-    std::vector<std::uint8_t> out;
-    for (std::uint32_t y = 0; y < like.irradiance.height; ++y)
-        for (std::uint32_t x = 0; x < like.irradiance.width; ++x) {
-            const std::size_t from = 3 * (std::size_t{y * block} * width + x * block);
-            out.insert(out.end(), rgb.begin() + static_cast<std::ptrdiff_t>(from),
-                       rgb.begin() + static_cast<std::ptrdiff_t>(from + 3));
+void put_color(std::vector<std::uint8_t>& rgb, std::size_t pixel, Vec3 color) {
+    for (std::size_t c = 0; c < 3; ++c) rgb[3 * pixel + c] = static_cast<std::uint8_t>(color[c] * 255.0f + 0.5f);
+}
+
+// A colour per chart, black between them; every block-th texel of the page.
+std::vector<std::uint8_t> chart_picture(const std::vector<std::uint32_t>& ids, const AtlasPage& page,
+                                        const Image& like) {
+    const std::uint32_t block = (std::max(page.width, page.height) + kPreviewEdge - 1) / kPreviewEdge;
+    std::vector<std::uint8_t> out(std::size_t{like.width} * like.height * 3);
+    for (std::uint32_t y = 0; y < like.height; ++y)
+        for (std::uint32_t x = 0; x < like.width; ++x) {
+            const std::uint32_t id = ids[std::size_t{y * block} * page.width + x * block];
+            if (id != kNone) put_color(out, std::size_t{y} * like.width + x, identity_color(id));
         }
     return out;
 }
@@ -40,8 +43,7 @@ std::vector<std::uint8_t> heat_map(const PagePreview& preview, float most) {
     std::vector<std::uint8_t> out(preview.covered.size() * 3);
     for (std::size_t i = 0; i < preview.covered.size(); ++i) {
         if (preview.covered[i] == 0) continue;
-        const Vec3 color = heat_color(most > 0.0f ? preview.samples.data[i] / most : 0.0f);
-        for (std::size_t c = 0; c < 3; ++c) out[3 * i + c] = static_cast<std::uint8_t>(color[c] * 255.0f + 0.5f);
+        put_color(out, i, heat_color(most > 0.0f ? preview.samples.data[i] / most : 0.0f));
     }
     return out;
 }
@@ -82,11 +84,10 @@ struct BakeWriter::Impl {
     }
 
     Status write_chart_preview(std::uint32_t page) {
-        const AtlasPage& size = atlas.pages[page];
-        const PagePreview& preview = previews[page];
-        const auto rgb = color_ids(chart_ids(loaded.scene, charts, atlas, page));
-        return write_png(file(PageFile::preview_charts, page), preview.irradiance.width, preview.irradiance.height, 3,
-                         thin_out(rgb, size.width, size.height, preview));
+        const Image& like = previews[page].irradiance;
+        const std::vector<std::uint32_t> ids = chart_ids(loaded.scene, charts, atlas, page);
+        return write_png(file(PageFile::preview_charts, page), like.width, like.height, 3,
+                         chart_picture(ids, atlas.pages[page], like));
     }
 
     Status write_previews() {
