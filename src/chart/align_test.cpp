@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "support/statistics.h"
+
 namespace lumel {
 namespace {
 
@@ -42,6 +44,27 @@ TEST(Align, TrianglesLieOnTheirLongestSide) {
     align_to_box(points);
     EXPECT_NEAR(points[0].y(), points[1].y(), 1e-9);
     EXPECT_NEAR(size_of(points).x(), 5.0, 1e-9);
+}
+
+// Random clouds: within 1 % of the smallest box of a search over 1,800 angles.
+TEST(Align, TheBoxIsSmall) {
+    test::Random random(2);
+    for (int n = 0; n < 100; ++n) {
+        Points points(6);
+        for (Eigen::Vector2d& p : points) p = {3.0 * random.unit(), random.unit()};
+        double smallest = 1e9;
+        for (int k = 0; k < 1800; ++k) {
+            const double c = std::cos(k * 8.7266e-4), s = std::sin(k * 8.7266e-4);
+            Eigen::Vector2d low(1e9, 1e9), high = -low;
+            for (const Eigen::Vector2d& p : points) {
+                const Eigen::Vector2d q(c * p.x() - s * p.y(), s * p.x() + c * p.y());
+                low = low.cwiseMin(q), high = high.cwiseMax(q);
+            }
+            smallest = std::min(smallest, (high - low).prod());
+        }
+        align_to_box(points);
+        EXPECT_LE(size_of(points).prod(), 1.011 * smallest) << n;
+    }
 }
 
 TEST(Align, DegenerateSetsPass) {

@@ -96,7 +96,7 @@ private:
             return Error{ErrorCode::usage, "TEXCOORD_1 cannot be kept as one atlas of the scene: " + reason,
                          node_name(scene_, used_.instance[m]), "use --uv1 mesh or --uv1 ignore"};
         }
-        if (used_.repeated && !asked) return false;
+        if (used_.repeated && !asked) return false;  // would overlap itself: no need to search
         const std::vector<UvOverlap> overlaps = scene_overlaps();
         if (!overlaps.empty() && !asked) return false;
         report_overlaps(overlaps);

@@ -11,8 +11,8 @@ namespace {
 
 Eigen::Vector3d to_double(Vec3 v) { return {v.x, v.y, v.z}; }
 
-// -0 and 0 are one position.
-std::tuple<float, float, float> position_key(Vec3 p) { return {p.x + 0.0f, p.y + 0.0f, p.z + 0.0f}; }
+// Compared as numbers: -0 and 0 are one position.
+std::tuple<float, float, float> position_key(Vec3 p) { return {p.x, p.y, p.z}; }
 
 std::vector<std::uint32_t> weld(const Mesh& mesh) {
     std::vector<std::uint32_t> order(mesh.positions.size());

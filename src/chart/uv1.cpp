@@ -106,8 +106,7 @@ MeshCharts uv1_islands(const Mesh& mesh, const std::vector<double>& areas, float
     std::vector<Corner> corners;
     for (std::uint32_t t = 0; t < areas.size(); ++t) {
         if (areas[t] == 0.0) continue;
-        for (const std::uint32_t v : mesh.triangles[t])
-            corners.push_back({mesh.uv1[v].x + 0.0f, mesh.uv1[v].y + 0.0f, t});
+        for (const std::uint32_t v : mesh.triangles[t]) corners.push_back({mesh.uv1[v].x, mesh.uv1[v].y, t});
     }
     std::sort(corners.begin(), corners.end());
     for (std::size_t i = 1; i < corners.size(); ++i)
