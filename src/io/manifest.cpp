@@ -175,13 +175,18 @@ Json warnings_json(const Diagnostics& diagnostics) {
 
 Json options_json(const BakeOptions& options) {
     static constexpr const char* kPresets[] = {"preview", "medium", "production"};
+    static constexpr const char* kUv1[] = {"automatic", "scene", "mesh", "ignore"};
     return {{"preset", kPresets[static_cast<std::size_t>(options.preset)]},
             {"samples", options.samples != 0 ? options.samples : preset_values(options.preset).samples},
             {"bounces", options.bounces},
             {"seed", options.seed},
+            {"resolution", {options.resolution_width, options.resolution_height}},
             {"max_page", options.max_page},
+            {"texels_per_metre", options.texels_per_metre},
+            {"uv1", kUv1[static_cast<std::size_t>(options.uv1)]},
             {"dilate", options.dilate},
             {"two_sided", options.two_sided},
+            {"ao_distance", options.ao_distance},
             {"stop", options.stop == StopRule::flux ? "flux" : "fixed"},
             {"direct_scale", options.direct_scale},
             {"indirect_scale", options.indirect_scale},

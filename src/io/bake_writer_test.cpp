@@ -1,0 +1,329 @@
+// A whole output folder from a made-up lightmap whose numbers are known, so that no ray need be traced.
+#include "io/bake_writer.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <limits>
+#include <optional>
+#include <set>
+
+#include "encode/l1.h"
+#include "image/tonemap.h"
+#include "io/baked.h"
+#include "io/image_io.h"
+#include "io/manifest.h"
+#include "io/page_writer.h"
+#include "math/constants.h"
+#include "support/json_schema.h"
+#include "support/load_gltf.h"
+#include "support/temporary_folder.h"
+
+namespace lumel {
+namespace {
+
+using test::GltfBuilder;
+using test::JsonSchema;
+using test::Loaded;
+using test::TemporaryFolder;
+using Json = nlohmann::ordered_json;
+
+Json json_file(const std::filesystem::path& path) { return Json::parse(std::ifstream(path)); }
+
+JsonSchema schema(const std::string& name) {
+    return JsonSchema(json_file(std::string(LUMEL_SOURCE_DIR) + "/docs/schema/" + name + ".schema.json"));
+}
+
+std::string joined(const std::vector<std::string>& lines) {
+    std::string out;
+    for (const std::string& line : lines) out += line + "\n";
+    return out;
+}
+
+// One texel in three has no value. Layer l of texel t: I = 10^l * (t + 1) * (1, 2, 3) / 100, the constant and one
+// linear coefficient.
+Lightmap made_up_page(std::uint32_t page, std::uint32_t width, std::uint32_t height) {
+    Lightmap map;
+    map.page = page;
+    map.width = width;
+    map.height = height;
+    std::uint32_t texels = 0;
+    for (std::uint32_t i = 0; i < width * height; ++i) map.texel_at.push_back(i % 3 == 2 ? kNone : texels++);
+    map.texels.resize(texels);
+    map.coverage.assign(texels, Coverage::baked);
+    map.coverage.back() = Coverage::dilated;
+    map.surface.albedo.assign(texels, Vec3{0.5f, 0.25f, 1.0f});
+    map.surface.emission.assign(texels, Vec3{});
+    float decade = 0.01f;
+    for (std::size_t l = 0; l < kLayerCount; ++l, decade *= 10.0f)
+        for (std::uint32_t t = 0; t < texels; ++t) {
+            const Vec3 light = Vec3{1, 2, 3} * (decade * float(t + 1));
+            LayerMoments& layer = map.texels.layers[t][l];
+            layer.irradiance = light;
+            layer.sh[0] = light * 3.0f;
+            layer.sh[2] = light * 0.7f;
+        }
+    for (std::uint32_t t = 0; t < texels; ++t) {
+        map.texels.count[t] = 60 + t;
+        map.texels.ambient_occlusion[t] = 0.5f;
+        map.texels.sky_visibility[t] = 0.25f;
+        map.texels.bent_normal[t] = {0, 0.5f, 0};
+        map.texels.variance[t] = {1, 2, 4};
+    }
+    return map;
+}
+
+float plane_value(const std::filesystem::path& path, const std::string& name, std::size_t pixel) {
+    const std::vector<std::string> names{name};
+    const auto read = read_exr_channels(path, names);
+    EXPECT_TRUE(read.ok()) << read.error().text();
+    return read.ok() ? read->planes.at(0).at(pixel) : -1.0f;
+}
+
+constexpr LayerWeights kAll{1, 1, 1};
+
+TEST(PageFiles, HoldWhatTheirUnitsSay) {
+    const TemporaryFolder folder;
+    const Lightmap map = made_up_page(0, 8, 8);
+    const auto page = write_page_files(folder.path(), map, kAll);
+    ASSERT_TRUE(page.ok()) << page.error().text();
+    // Pixel 4 is texel 3: I = (0.01 + 0.1 + 1) * 4 * (1, 2, 3).
+    const double green = 1.11 * 4 * 2;
+    EXPECT_NEAR(plane_value(folder / "lightmap_0.exr", "G", 4), green, 1e-5);
+    EXPECT_NEAR(plane_value(folder / "irradiance_0.exr", "G", 4), green * kPi, green * kPi * 0x1p-11);
+    EXPECT_EQ(plane_value(folder / "lightmap_0.exr", "G", 5), 0.0f);  // no texel
+    EXPECT_NEAR(plane_value(folder / "bent_normal_0.exr", "G", 4), 0.5, 1e-3);
+    EXPECT_NEAR(page->coverage, 42.0 / 64, 1e-12);  // 43 texels, one of them dilated
+    const auto ao = read_image(folder / "ao_0.png"), sky = read_image(folder / "sky_visibility_0.png");
+    ASSERT_TRUE(ao.ok() && sky.ok());
+    EXPECT_NEAR(ao->data[0], 128 / 255.0, 1e-6);
+    EXPECT_NEAR(sky->data[0], 64 / 255.0, 1e-6);
+}
+
+TEST(PageFiles, LayersThatAreNotIncludedAreNotInTheSum) {
+    const TemporaryFolder folder;
+    Include include;
+    include.direct = false;
+    ASSERT_TRUE(write_page_files(folder.path(), made_up_page(0, 8, 8), layer_weights(include)).ok());
+    EXPECT_NEAR(plane_value(folder / "lightmap_0.exr", "R", 0), 1.1, 1e-5);
+    // The master keeps all.
+    EXPECT_NEAR(plane_value(folder / "master_0.exr", "direct.I.R", 0), 0.01, 1e-7);
+}
+
+TEST(PageFiles, TheMasterHoldsEveryMoment) {
+    const TemporaryFolder folder;
+    const Lightmap map = made_up_page(0, 8, 8);
+    ASSERT_TRUE(write_page_files(folder.path(), map, kAll).ok());
+    const auto all = read_exr_channels(folder / "master_0.exr", {});
+    ASSERT_TRUE(all.ok()) << all.error().text();
+    std::set<std::string> expected{"coverage", "count", "variance.R", "variance.G", "variance.B"};
+    for (const char* layer : kLayerNames)
+        for (const char* channel : {"R", "G", "B"}) {
+            for (int i = 0; i < 9; ++i) expected.insert(std::string(layer) + ".L" + std::to_string(i) + "." + channel);
+            expected.insert(std::string(layer) + ".I." + channel);
+        }
+    EXPECT_EQ(std::set<std::string>(all->names.begin(), all->names.end()), expected);
+    const std::filesystem::path master = folder / "master_0.exr";
+    EXPECT_NEAR(plane_value(master, "sky.L0.B", 4), 0.1 * 4 * 3 * 3, 3.6 * 0x1p-11);
+    EXPECT_NEAR(plane_value(master, "indirect.L2.R", 4), 0.7 * 4, 2.8 * 0x1p-11);
+    EXPECT_EQ(plane_value(master, "count", 4), 63.0f);
+    EXPECT_EQ(plane_value(master, "coverage", 4), 3.0f);
+    EXPECT_EQ(plane_value(master, "coverage", 5), 0.0f);
+    EXPECT_EQ(plane_value(master, "variance.B", 4), 4.0f);
+}
+
+TEST(PageFiles, L1IsThatOfTheSum) {
+    const TemporaryFolder folder;
+    ASSERT_TRUE(write_page_files(folder.path(), made_up_page(0, 8, 8), kAll).ok());
+    RadianceSh<Vec3, 4> sh;
+    sh.c[0] = Vec3{1, 2, 3} * (1.11f * 4 * 3.0f);
+    sh.c[2] = Vec3{1, 2, 3} * (1.11f * 4 * 0.7f);
+    const L1Texel texel = encode_l1(sh);
+    const std::filesystem::path file = folder / "l1_0.exr";
+    EXPECT_NEAR(plane_value(file, "L0.G", 4), texel.l0.y, texel.l0.y * 0x1p-11);
+    EXPECT_NEAR(plane_value(file, "L1n.G.Z", 4), texel.l1n[1].z, 1e-4);
+    EXPECT_NEAR(plane_value(file, "L1n.G.X", 4), 0.0, 1e-6);
+}
+
+// Sunlight of 120 000 lux on white has E of 120 000, more than a half can hold; starlight less than it resolves.
+TEST(PageFiles, NumbersThatHalfCannotHoldAreWrittenAsFloat) {
+    for (const float scale : {3000.0f, 1e-6f}) {
+        const TemporaryFolder folder;
+        Lightmap map = made_up_page(0, 8, 8);
+        for (auto& layers : map.texels.layers)
+            for (LayerMoments& layer : layers) {
+                layer.irradiance *= scale;
+                for (Vec3& coefficient : layer.sh) coefficient *= scale;
+            }
+        const auto page = write_page_files(folder.path(), map, kAll);
+        ASSERT_TRUE(page.ok());
+        const double expected = 1.11 * 43 * 3 * double(scale) * double(kPi);
+        const std::size_t last = 8 * 8 - 1;
+        EXPECT_NEAR(plane_value(folder / "irradiance_0.exr", "B", last), expected, expected * 1e-6);
+        for (const ManifestFile& file : page->files) {
+            const bool wide = file.kind == PageFile::irradiance || file.kind == PageFile::master;
+            if (wide) {
+                EXPECT_EQ(file.type, "float");
+            }
+        }
+    }
+}
+
+TEST(LitTexture, IsAlbedoTimesIrradianceOverItsStrength) {
+    const Lightmap map = made_up_page(0, 30, 30);
+    const LitTexture texture = lit_texture(map, kAll);
+    const auto image = decode_image(texture.png, "texture");
+    ASSERT_TRUE(image.ok());
+    const std::uint32_t texel = map.texel_at[600];
+    const Vec3 expected = Vec3{0.5f, 0.25f, 1.0f} * Vec3{1, 2, 3} * (1.11f * float(texel + 1));
+    for (std::size_t c = 0; c < 3; ++c) {
+        const float shown = srgb_decode(image->data[600 * image->channels + c]) * texture.strength;
+        // Half a step of 8-bit sRGB code, at most 1 % of full scale.
+        EXPECT_NEAR(shown, expected[c], 0.01f * texture.strength);
+    }
+}
+
+TEST(LitTexture, LampsKeepTheirHueAndDoNotDarkenTheRest) {
+    Lightmap map = made_up_page(0, 30, 30);
+    const float strength = lit_texture(map, kAll).strength;
+    map.surface.emission[0] = {4000, 2000, 0};
+    const LitTexture texture = lit_texture(map, kAll);
+    EXPECT_EQ(texture.strength, strength);
+    const auto image = decode_image(texture.png, "texture");
+    ASSERT_TRUE(image.ok());
+    EXPECT_EQ(image->data[0], 1.0f);
+    EXPECT_NEAR(srgb_decode(image->data[1]), 0.5, 0.01);
+}
+
+TEST(LitTexture, ABlackPageHasAUsableStrength) {
+    Lightmap map = made_up_page(0, 8, 8);
+    for (auto& layers : map.texels.layers) layers = {};
+    EXPECT_EQ(lit_texture(map, kAll).strength, 1.0f);
+}
+
+TEST(Preview, IsTheMeanOfCoveredTexels) {
+    const Lightmap map = made_up_page(0, 8, 8);
+    const PagePreview preview = preview_of(map, kAll, 4);
+    EXPECT_EQ(preview.irradiance.width, 4u);
+    // Pixels 0, 1 and 9 of the first block (8 is empty): texels 0, 1, 6.
+    EXPECT_NEAR(preview.irradiance.data[0], 1.11 * (1 + 2 + 7) / 3, 1e-5);
+    EXPECT_NEAR(preview.samples.data[0], 60 + 7.0 / 3, 1e-4);
+    EXPECT_EQ(preview.covered[0], 1);
+    EXPECT_EQ(preview_of(map, kAll, 8).irradiance.width, 8u);
+}
+
+// Everything but rays: a scene, its layout, made-up pages.
+struct Baked {
+    explicit Baked(const std::filesystem::path& output) : loaded(scene()) {
+        ChartOptions chart_options;
+        chart_options.texels_per_metre = 12;
+        geometry = flatten(loaded.scene(), loaded.context).value();
+        charts = make_charts(loaded.scene(), geometry, chart_options, loaded.context).value();
+        atlas = make_atlas(loaded.scene(), geometry, charts, chart_options, loaded.context).value();
+        auto created = BakeWriter::create(output, *loaded.result, options);
+        EXPECT_TRUE(created.ok());
+        writer.emplace(std::move(created).value());
+        EXPECT_TRUE(writer->layout(geometry, charts, atlas).ok());
+        for (std::uint32_t p = 0; p < atlas.pages.size(); ++p)
+            EXPECT_TRUE(writer->page(made_up_page(p, atlas.pages[p].width, atlas.pages[p].height)).ok());
+    }
+    static GltfBuilder scene() {
+        GltfBuilder builder;
+        const std::size_t triangle = builder.triangle();
+        builder.node({{"name", "a"}, {"mesh", triangle}});
+        builder.node(
+            {{"name", "b"}, {"mesh", triangle}, {"translation", {2, 0, 0}}, {"extras", {{"lightmap", false}}}});
+        return builder;
+    }
+    Status finish() {
+        BakeReport report;
+        report.input_hash = std::string(32, 'a');
+        report.stages = {{"trace", 1.5, 2.5}};
+        report.pages = {{0, 8, 8, 40, 2, 1, 3, 0.5}};
+        report.tracer = "none";
+        report.rays_per_second = std::numeric_limits<double>::infinity();
+        loaded.context.diagnostics.add("some-code", "A message.", "somewhere \"quoted\"");
+        return writer->finish(report, loaded.context.diagnostics);
+    }
+    Loaded loaded;
+    WorldGeometry geometry;
+    ChartSet charts;
+    Atlas atlas;
+    BakeOptions options;
+    std::optional<BakeWriter> writer;
+};
+
+TEST(BakeWriter, WritesTheWholeFolder) {
+    const TemporaryFolder folder;
+    Baked baked(folder / "out");
+    ASSERT_TRUE(baked.writer->write_scene().ok());
+    // Views are rendered from what is there before the folder appears.
+    const auto lighting = read_baked(baked.writer->folder(), baked.loaded.scene(), baked.geometry);
+    ASSERT_TRUE(lighting.ok()) << lighting.error().text();
+    EXPECT_TRUE(lighting->irradiance(0, 0.3f, 0.3f).has_value());
+    EXPECT_FALSE(lighting->irradiance(1, 0.3f, 0.3f).has_value());
+    EXPECT_FALSE(std::filesystem::exists(folder / "out"));
+    const Status status = baked.finish();
+    ASSERT_TRUE(status.ok()) << status.error().text();
+    std::set<std::string> expected{"scene.glb", "manifest.json", "report.json"};
+    for (const PageFile kind : kPageFiles) expected.insert(page_file(kind, 0));
+    std::set<std::string> found;
+    for (const auto& entry : std::filesystem::directory_iterator(folder / "out")) found.insert(entry.path().filename());
+    EXPECT_EQ(found, expected);
+    EXPECT_EQ(folder.entries(), 1u);
+}
+
+TEST(BakeWriter, ManifestAndReportFollowTheirSchemas) {
+    const TemporaryFolder folder;
+    Baked baked(folder / "out");
+    ASSERT_TRUE(baked.writer->write_scene().ok());
+    ASSERT_TRUE(baked.finish().ok());
+    const Json manifest = json_file(folder / "out/manifest.json"), report = json_file(folder / "out/report.json");
+    EXPECT_EQ(joined(schema("manifest").errors(manifest)), "");
+    EXPECT_EQ(joined(schema("report").errors(report)), "");
+    EXPECT_EQ(manifest["instances"][1]["class"], "volume");
+    EXPECT_EQ(manifest["instances"][1]["transform"][9], 2.0);
+    EXPECT_EQ(manifest["charts"]["page"].size(), baked.atlas.placements.size());
+    EXPECT_EQ(report["rays_per_second"], nullptr);
+    EXPECT_EQ(report["warnings"].back()["examples"][0], "somewhere \"quoted\"");
+    // Every file that the manifest names is there.
+    for (const auto& [kind, file] : manifest["pages"][0]["files"].items())
+        EXPECT_TRUE(std::filesystem::exists(folder / "out" / file["file"].get<std::string>())) << kind;
+}
+
+TEST(JsonSchema, RefusesWhatTheSchemaForbids) {
+    const TemporaryFolder folder;
+    Baked baked(folder / "out");
+    ASSERT_TRUE(baked.writer->write_scene().ok());
+    ASSERT_TRUE(baked.finish().ok());
+    const Json manifest = json_file(folder / "out/manifest.json");
+    const std::vector<std::pair<const char*, Json>> wrong{{"/version", 2},
+                                                          {"/pages/0/width", 1.5},
+                                                          {"/pages/0/coverage", 1.1},
+                                                          {"/pages/0/files/l1/units", "E "},
+                                                          {"/charts/scale/0", {1, 2, 3}},
+                                                          {"/instances/0/class", "wall"},
+                                                          {"/input_hash", "xyz"},
+                                                          {"/unheard_of", 1}};
+    for (const auto& [where, value] : wrong) {
+        Json broken = manifest;
+        broken[Json::json_pointer(where)] = value;
+        EXPECT_FALSE(schema("manifest").errors(broken).empty()) << where;
+    }
+    Json lacking = manifest;
+    lacking.erase("units");
+    EXPECT_FALSE(schema("manifest").errors(lacking).empty());
+}
+
+TEST(BakeWriter, AbandonedBakesLeaveNothing) {
+    const TemporaryFolder folder;
+    {
+        Baked baked(folder / "out");
+        ASSERT_TRUE(baked.writer->write_scene().ok());
+        EXPECT_EQ(folder.entries(), 1u);
+    }
+    EXPECT_EQ(folder.entries(), 0u);
+}
+
+}  // namespace
+}  // namespace lumel

@@ -1,0 +1,131 @@
+#include "io/output_folder.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <set>
+
+#include "support/temporary_folder.h"
+
+namespace lumel {
+namespace {
+
+namespace fs = std::filesystem;
+using test::TemporaryFolder;
+
+void put(const fs::path& path, const std::string& text) { std::ofstream(path) << text; }
+
+std::string text_of(const fs::path& path) {
+    std::string text;
+    std::getline(std::ifstream(path), text, '\0');
+    return text;
+}
+
+std::set<std::string> names_in(const fs::path& folder) {
+    std::set<std::string> out;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) out.insert(entry.path().filename());
+    return out;
+}
+
+using Names = std::set<std::string>;
+
+TEST(OutputFolder, AppearsOnlyWhenCommitted) {
+    const TemporaryFolder folder;
+    auto output = OutputFolder::create(folder / "a/b/out/");
+    ASSERT_TRUE(output.ok()) << output.error().text();
+    put(output->path() / "manifest.json", "new");
+    EXPECT_FALSE(fs::exists(folder / "a/b/out"));
+    ASSERT_TRUE(output->commit().ok());
+    EXPECT_EQ(text_of(folder / "a/b/out/manifest.json"), "new");
+    EXPECT_EQ(names_in(folder / "a/b"), Names{"out"});
+}
+
+TEST(OutputFolder, LeavesNothingWithoutCommit) {
+    const TemporaryFolder folder;
+    {
+        auto output = OutputFolder::create(folder / "out");
+        ASSERT_TRUE(output.ok());
+        put(output->path() / "scene.glb", "half");
+        const OutputFolder moved = std::move(output).value();
+        EXPECT_EQ(folder.entries(), 1u);
+    }
+    EXPECT_EQ(folder.entries(), 0u);
+}
+
+TEST(OutputFolder, ReplacesOurFilesAndKeepsForeignOnes) {
+    const TemporaryFolder folder;
+    fs::create_directory(folder / "out");
+    for (const char* name : {"manifest.json", "scene.glb", "lightmap_0.exr", "lightmap_7.exr", "preview_view_1.png"})
+        put(folder / "out" / name, "old");
+    for (const char* name : {"notes.txt", "lightmap_x.exr", "lightmap_.exr", "my_manifest.json"})
+        put(folder / "out" / name, "foreign");
+    auto output = OutputFolder::create(folder / "out");
+    ASSERT_TRUE(output.ok());
+    for (const char* name : {"manifest.json", "scene.glb", "lightmap_0.exr"}) put(output->path() / name, "new");
+    ASSERT_TRUE(output->commit().ok());
+    EXPECT_EQ(names_in(folder / "out"), (Names{"manifest.json", "scene.glb", "lightmap_0.exr", "notes.txt",
+                                               "lightmap_x.exr", "lightmap_.exr", "my_manifest.json"}));
+    EXPECT_EQ(text_of(folder / "out/scene.glb"), "new");
+    EXPECT_EQ(text_of(folder / "out/notes.txt"), "foreign");
+    EXPECT_EQ(folder.entries(), 1u);
+}
+
+// A folder of the name of one of our files cannot be replaced: everything must be as before.
+TEST(OutputFolder, AFailureHalfWayPutsTheOldFilesBack) {
+    const TemporaryFolder folder;
+    fs::create_directories(folder / "out/zzz");
+    put(folder / "out/manifest.json", "old");
+    put(folder / "out/scene.glb", "old");
+    auto output = OutputFolder::create(folder / "out");
+    ASSERT_TRUE(output.ok());
+    for (const char* name : {"manifest.json", "scene.glb", "zzz"}) put(output->path() / name, "new");
+    const Status status = output->commit();
+    ASSERT_FALSE(status.ok());
+    EXPECT_EQ(status.error().code, ErrorCode::io);
+    EXPECT_EQ(names_in(folder / "out"), (Names{"manifest.json", "scene.glb", "zzz"}));
+    EXPECT_EQ(text_of(folder / "out/manifest.json"), "old");
+    EXPECT_EQ(text_of(folder / "out/scene.glb"), "old");
+}
+
+TEST(OutputFolder, AFileInThePlaceOfTheFolderIsAnErrorAtOnce) {
+    const TemporaryFolder folder;
+    put(folder / "out", "a file");
+    const auto output = OutputFolder::create(folder / "out");
+    ASSERT_FALSE(output.ok());
+    EXPECT_NE(output.error().text().find("not a folder"), std::string::npos);
+    EXPECT_FALSE(OutputFolder::create(folder / "out/below").ok());
+    EXPECT_FALSE(OutputFolder::create("/").ok());
+    EXPECT_FALSE(OutputFolder::create("/proc/lumel-out").ok());
+    EXPECT_EQ(folder.entries(), 1u);
+}
+
+TEST(OutputFolder, WhatAKilledProcessLeftIsRemoved) {
+    const TemporaryFolder folder;
+    // Process ids end far below this.
+    fs::create_directory(folder / "out.partial-2000000000");
+    fs::create_directory(folder / "out.partial-mine");
+    // The parent process is alive: its folder stays.
+    const std::string alive = "out.partial-" + std::to_string(::getppid());
+    fs::create_directory(folder / alive);
+    auto output = OutputFolder::create(folder / "out");
+    ASSERT_TRUE(output.ok());
+    ASSERT_TRUE(output->commit().ok());
+    EXPECT_EQ(names_in(folder.path()), (Names{"out", "out.partial-mine", alive}));
+}
+
+TEST(OutputFolder, FollowsALinkToItsPlace) {
+    const TemporaryFolder folder;
+    fs::create_directories(folder / "far/real");
+    fs::create_directory_symlink(folder / "far/real", folder / "link");
+    auto output = OutputFolder::create(folder / "link");
+    ASSERT_TRUE(output.ok());
+    EXPECT_EQ(output->path().parent_path().filename(), "far");
+    put(output->path() / "scene.glb", "new");
+    ASSERT_TRUE(output->commit().ok());
+    EXPECT_TRUE(fs::is_symlink(folder / "link"));
+    EXPECT_EQ(text_of(folder / "far/real/scene.glb"), "new");
+}
+
+}  // namespace
+}  // namespace lumel
