@@ -36,6 +36,9 @@ public:
     [[nodiscard]] bool empty() const;  // nothing emits: a bake would be black
     [[nodiscard]] std::size_t sun_count() const { return suns_.size(); }
     [[nodiscard]] bool has_sky() const { return has_sky_; }
+    // Whether sample_sky has samples (maps), and whether sample_sun reads its numbers (suns with an angular size).
+    [[nodiscard]] bool samples_sky() const { return sky_sampler_.has_value(); }
+    [[nodiscard]] bool samples_sun(std::size_t sun) const { return suns_[sun].shape.has_size(); }
     [[nodiscard]] bool has_local() const { return !local_ends_.empty(); }
 
     [[nodiscard]] LightSample sample_sun(std::size_t sun, Vec2 u, bool bounced) const;

@@ -11,6 +11,7 @@ public:
 
     [[nodiscard]] LightSample sample(Vec2 u) const;
     [[nodiscard]] LightHit intersect(Vec3 direction) const;
+    [[nodiscard]] bool has_size() const { return one_minus_cos_ > 0.0f; }
 
 private:
     Vec3 towards_;  // unit, to the centre of the disc

@@ -117,10 +117,11 @@ public:
         const LightSet& lights = transport_.lights;
         const std::uint32_t key = sampler.hash(first_pair);
         for (std::size_t sun = 0; sun < lights.sun_count(); ++sun) {
-            const Vec2 u = sampler.pair(first_pair + kFirstSunPair + static_cast<std::uint32_t>(sun));
+            const std::uint32_t pair = first_pair + kFirstSunPair + static_cast<std::uint32_t>(sun);
+            const Vec2 u = lights.samples_sun(sun) ? sampler.pair(pair) : Vec2{};
             push(lane, Layer::direct, vertex, lights.sample_sun(sun, u, bounced), key, pdf_of, value_of);
         }
-        if (lights.has_sky())
+        if (lights.samples_sky())
             push(lane, Layer::sky, vertex, lights.sample_sky(sampler.pair(first_pair + kSkyPair)), key, pdf_of,
                  value_of);
         if (lights.has_local())

@@ -135,7 +135,8 @@ private:
                                       material,
                                       index,
                                       mesh_triangle,
-                                      flags});
+                                      flags,
+                                      {}});
             finish_triangle(out_.triangle_count() - 1);
         }
     }
@@ -152,7 +153,8 @@ private:
 
     void finish_triangle(std::uint32_t triangle) {
         WorldTriangle& t = out_.triangles[triangle];
-        const Vec3 face = out_.geometric_normal(triangle);
+        t.normal = out_.compute_normal(triangle);
+        const Vec3 face = t.normal;
         if (face == Vec3{}) {
             const Instance& instance = scene_.instances[t.instance];
             context_.diagnostics.add("zero-area-triangle", "Triangles without area get no texels and stop no rays",

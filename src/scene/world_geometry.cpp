@@ -33,7 +33,7 @@ Vec3 face_normal(const Cross& front) {
 
 }  // namespace
 
-Vec3 WorldGeometry::geometric_normal(std::uint32_t triangle) const {
+Vec3 WorldGeometry::compute_normal(std::uint32_t triangle) const {
     return face_normal(front_cross(*this, triangles[triangle]));
 }
 
@@ -41,16 +41,9 @@ Vec3 WorldGeometry::shading_normal(std::uint32_t triangle, float b1, float b2) c
     const WorldTriangle& t = triangles[triangle];
     const Vec3 n =
         normals[t.vertices[0]] * (1.0f - b1 - b2) + normals[t.vertices[1]] * b1 + normals[t.vertices[2]] * b2;
-    const Cross front = front_cross(*this, t);
-    const bool in_front = n.x * front.x + n.y * front.y + n.z * front.z > 0.0;
-    if (in_front) return normalize_or(n, face_normal(front));
+    if (dot(n, t.normal) > 0.0f) return normalize_or(n, t.normal);
     // A triangle without area has no front; the vertex normals are all there is.
-    return front.squared() > 0.0 ? face_normal(front) : normalize_or(n, {0, 1, 0});
-}
-
-Vec3 WorldGeometry::position(std::uint32_t triangle, float b1, float b2) const {
-    const auto [a, b, c] = corners(triangle);
-    return a * (1.0f - b1 - b2) + b * b1 + c * b2;
+    return t.normal != Vec3{} ? t.normal : normalize_or(n, {0, 1, 0});
 }
 
 float WorldGeometry::area(std::uint32_t triangle) const {

@@ -14,26 +14,29 @@ namespace lumel {
 
 // What a ray needs to know of a triangle before it touches the material.
 enum TriangleFlags : std::uint8_t {
-    kDoubleSided = 1,    // both faces are lit and bounce
-    kNeedsAlpha = 2,     // MASK or BLEND: the tracer asks the material whether a hit counts
-    kOccluderOnly = 4,   // NodeClass::occluder: blocks, bounces nothing
-    kEmissive = 8,       // its material emits
-    kMirrored = 16,      // the instance has a negative determinant: the front is -cross(e1, e2)
-    kCurved = 32,        // some vertex normal differs from the face normal: smooth-shaded
+    kDoubleSided = 1,   // both faces are lit and bounce
+    kNeedsAlpha = 2,    // MASK or BLEND: the tracer asks the material whether a hit counts
+    kOccluderOnly = 4,  // NodeClass::occluder: blocks, bounces nothing
+    kEmissive = 8,      // its material emits
+    kMirrored = 16,     // the instance has a negative determinant: the front is -cross(e1, e2)
+    kCurved = 32,       // some vertex normal differs from the face normal: smooth-shaded
 };
 
 struct WorldTriangle {
-    Triangle vertices;            // into the arrays below; corner order is the mesh's own, mirrored or not
-    std::uint32_t material = 0;   // into Scene::materials, never kNone
-    std::uint32_t instance = 0;   // into Scene::instances
+    Triangle vertices;           // into the arrays below; corner order is the mesh's own, mirrored or not
+    std::uint32_t material = 0;  // into Scene::materials, never kNone
+    std::uint32_t instance = 0;  // into Scene::instances
     std::uint32_t mesh_triangle = 0;
     std::uint8_t flags = 0;
+    Vec3 normal{};  // unit, of the front face; zero for a zero-area triangle. Stored: paths ask for it at every bounce
 };
 
-// Instances of class probe and ignored have no triangles here. Triangles of an instance are consecutive and in mesh order.
+// Instances of class probe and ignored have no triangles here. Triangles of an instance are consecutive and in mesh
+// order.
 struct WorldGeometry {
     std::vector<Vec3> positions;
-    std::vector<Vec3> normals;  // unit vertex normals; the geometric normal's side is decided by the winding, not by these
+    std::vector<Vec3>
+        normals;  // unit vertex normals; the geometric normal's side is decided by the winding, not by these
     std::vector<Vec2> uv0, uv1;  // one per vertex; zero where the mesh has none
     std::vector<Vec4> colors;    // empty where no mesh has vertex colours
     std::vector<WorldTriangle> triangles;
@@ -46,15 +49,21 @@ struct WorldGeometry {
         return {positions[v[0]], positions[v[1]], positions[v[2]]};
     }
     // Unit normal of the front face; zero for a zero-area triangle.
-    [[nodiscard]] Vec3 geometric_normal(std::uint32_t triangle) const;
+    [[nodiscard]] Vec3 geometric_normal(std::uint32_t triangle) const { return triangles[triangle].normal; }
     // Interpolated vertex normal at barycentrics (1-b1-b2, b1, b2), unit, on the front side: where the file's normal
     // points behind the face (n . n_g <= 0) it is the face normal. This is the normal that the runtime sees.
     [[nodiscard]] Vec3 shading_normal(std::uint32_t triangle, float b1, float b2) const;
-    [[nodiscard]] Vec3 position(std::uint32_t triangle, float b1, float b2) const;
+    [[nodiscard]] Vec3 position(std::uint32_t triangle, float b1, float b2) const {
+        const auto [a, b, c] = corners(triangle);
+        return a * (1.0f - b1 - b2) + b * b1 + c * b2;
+    }
     [[nodiscard]] float area(std::uint32_t triangle) const;
+    // From the corners; what `WorldTriangle::normal` is set to.
+    [[nodiscard]] Vec3 compute_normal(std::uint32_t triangle) const;
 };
 
-// Errors: invalid_input for non-finite world positions. Zero-area triangles are counted ("zero-area-triangle") and kept.
+// Errors: invalid_input for non-finite world positions. Zero-area triangles are counted ("zero-area-triangle") and
+// kept.
 Result<WorldGeometry> flatten(const Scene& scene, Context& context);
 
 // Hash of everything in the scene that a bake's result depends on.
