@@ -29,19 +29,13 @@ struct Pixels {
         const auto x = static_cast<float>(column), y = static_cast<float>(row);
         return sky_direction((x + 0.5f) / static_cast<float>(map.width), (y + 0.5f) / static_cast<float>(map.height));
     }
-    // The eight around a pixel; columns wrap, and beyond a pole lies the other side.
+    // The eight around a pixel (a row beyond a pole is the row itself); columns wrap.
     [[nodiscard]] std::array<std::size_t, 8> neighbours(std::size_t pixel) const {
-        std::array<std::size_t, 8> out{};
-        std::size_t n = 0;
         const std::size_t w = map.width, h = map.height, x = pixel % w, y = pixel / w;
-        for (std::size_t dy = 0; dy < 3; ++dy)
-            for (std::size_t dx = 0; dx < 3; ++dx) {
-                if (dx == 1 && dy == 1) continue;
-                const bool over_pole = (y == 0 && dy == 0) || (y + 1 == h && dy == 2);
-                const std::size_t column = (x + w + dx - 1 + (over_pole ? w / 2 : 0)) % w;
-                out[n++] = (over_pole ? y : y + dy - 1) * w + column;
-            }
-        return out;
+        const std::size_t left = x == 0 ? w - 1 : x - 1, right = x + 1 == w ? 0 : x + 1;
+        const std::size_t above = (y == 0 ? 0 : y - 1) * w, here = y * w, below = std::min(y + 1, h - 1) * w;
+        return {above + left, above + x,    above + right, here + left,
+                here + right, below + left, below + x,     below + right};
     }
 };
 

@@ -39,9 +39,9 @@ SkyMap with_sun(SkyMap map, Vec3 towards, float angular_diameter, Vec3 radiance)
 TEST(ExtractSun, FindsItsDirectionColourSizeAndIlluminance) {
     const Vec3 radiance{50000, 40000, 30000};
     const float diameter = 2.0f * kDegrees;
-    // Across the seam of the map, near the pole, at the horizon.
-    for (const Vec3 towards :
-         {normalize({-1, 0.6f, 0.01f}), normalize({0.02f, 1, 0.03f}), normalize({0.5f, 0.02f, 0.8f})}) {
+    // Across the seam of the map, near the pole, over the pole, at the horizon.
+    for (const Vec3 towards : {normalize({-1, 0.6f, 0.01f}), normalize({0.02f, 1, 0.03f}),
+                               normalize({0.004f, 1, 0.003f}), normalize({0.5f, 0.02f, 0.8f})}) {
         const SkyMap map = with_sun(test::gradient_sky(512, 256, 1.0f, 0.5f), towards, diameter, radiance);
         const Result<ExtractedSun> result = extract_sun(map);
         ASSERT_TRUE(result.ok()) << result.error().text();
@@ -54,8 +54,7 @@ TEST(ExtractSun, FindsItsDirectionColourSizeAndIlluminance) {
             EXPECT_NEAR(sun.intensity[k] / (radiance[k] * solid_angle), 1.0, 0.02)
                 << k;  // 36 sub-samples an edge pixel
         // Nothing bright is left.
-        for (const Vec3 c : result->sky.radiance)
-            ASSERT_LT(max_component(c), 1000.0f);  // 2 % of the peak
+        for (const Vec3 c : result->sky.radiance) ASSERT_LT(max_component(c), 1000.0f);  // 2 % of the peak
     }
 }
 

@@ -90,6 +90,14 @@ TEST(SkySampler, DensityIsPositiveWhereverTheLookupIs) {
     }
 }
 
+TEST(SkySampler, AConstantMapIsSampledUniformly) {
+    const SkySampler sampler(test::gradient_sky(64, 32, 1.0f, 0.0f));
+    test::Random random(4);
+    for (int i = 0; i < 1000; ++i)
+        // Shares of 2^24: the smallest row has 40,000 units, a pixel of it 1/64 of all.
+        ASSERT_NEAR(sampler.sample(random.pair()).pdf * 4 * 3.14159265358979, 1.0, 1e-3);
+}
+
 // What importance sampling is for: a map with a sun. Uniform directions would have a relative deviation of
 // sqrt(4 pi / solid angle of the sun) = 190.
 TEST(SkySampler, ASunInTheMapHardlyAddsNoise) {
