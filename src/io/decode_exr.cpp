@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "base/try.h"
+#include "io/exr_fence.h"
 #include "io/image_codecs.h"
 
 namespace lumel {
@@ -106,12 +107,16 @@ std::vector<std::string> colour_channels(const Imf::Header& header) {
 template <class Read>
 auto with_exr(std::span<const std::byte> bytes, const std::string& where, Read&& read)
     -> decltype(read(std::declval<Imf::InputFile&>())) {
+    LUMEL_TRY_STATUS(check_exr_headers(bytes, where));
     try {
         // The library sizes its line buffers from the header before we see it.
         Imf::Header::setMaxImageSize(static_cast<int>(kMaxImageEdge), static_cast<int>(kMaxImageEdge));
         Imf::Header::setMaxTileSize(static_cast<int>(kMaxImageEdge), static_cast<int>(kMaxImageEdge));
         MemoryStream stream(bytes, where);
         Imf::InputFile file(stream, 0);
+        // Before the pixels are allocated: every block that the header promises has its place in the file.
+        if (!file.isComplete())
+            return Error{ErrorCode::invalid_input, "ends within the pixels", where, "the file is damaged"};
         return read(file);
     } catch (const std::exception& error) {
         return Error{ErrorCode::invalid_input, std::string("cannot be read as OpenEXR: ") + error.what(), where,

@@ -169,6 +169,50 @@ TEST(DecodeExr, RefusesEveryTruncation) {
         EXPECT_FALSE(decode_image(std::span(whole).first(size), "test").ok()) << size;
 }
 
+// A header attribute that asks for 2 GB, and one whose stated size is not its type's: refused before the library
+// believes them.
+TEST(DecodeExr, RefusesImpossibleAttributes) {
+    test::TemporaryFolder folder;
+    const std::vector<std::byte> whole = exr_bytes(folder, {{"R"}, {"G"}, {"B"}});
+    const auto size_of = [&](std::vector<std::byte> bytes, const std::string& attribute, std::uint32_t size) {
+        const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+        const std::size_t at = text.find(attribute);
+        EXPECT_NE(at, std::string::npos);
+        std::memcpy(bytes.data() + at + attribute.size(), &size, 4);
+        const auto image = decode_image(bytes, "test");
+        return image.ok() ? "no error" : image.error().text();
+    };
+    const std::string window("dataWindow\0box2i\0", 17);
+    EXPECT_EQ(size_of(whole, window, 16), "no error");
+    EXPECT_NE(size_of(whole, window, 12).find("impossible size"), std::string::npos);
+    EXPECT_NE(size_of(whole, window, 0x70000000).find("impossible size"), std::string::npos);
+    EXPECT_NE(size_of(whole, std::string("channels\0chlist\0", 16), 40).find("impossible size"), std::string::npos);
+}
+
+TEST(DecodeExr, ReadsPicturesOfOtherPrograms) {
+    const auto folder = test::data_file("reference");
+    if (!folder) GTEST_SKIP() << "no test data; set LUMEL_DATA";
+    int read = 0;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(*folder)) {
+        if (entry.path().extension() != ".exr") continue;
+        const auto image = read_image(entry.path());
+        EXPECT_TRUE(image.ok()) << image.error().text();
+        ++read;
+    }
+    EXPECT_GT(read, 0);
+}
+
+// A JPEG whose Huffman table names more symbols than there are bytes: stb_image would write beyond its arrays.
+TEST(DecodeJpeg, RefusesHuffmanTablesThatAreTooLarge) {
+    std::string jpeg("\xff\xd8\xff\xc4\x01\x53\x00", 7);
+    jpeg += std::string("\x40\x40\x40\x40\x40\0\0\0\0\0\0\0\0\0\0\0", 16);  // 320 symbols
+    jpeg += std::string(320, '\x01') + std::string("\xff\xd9", 2);
+    EXPECT_NE(error_of(jpeg).find("too many symbols"), std::string::npos) << error_of(jpeg);
+    jpeg[5] = '\x10';
+    EXPECT_FALSE(decode(jpeg).ok());
+    EXPECT_NE(error_of(jpeg.substr(0, 100)).find("leaves the file"), std::string::npos);
+}
+
 TEST(ReadSky, WantsTwiceAsWideAsHighAndSanePixels) {
     test::TemporaryFolder folder;
     const auto sky_error = [&](std::uint32_t width, std::uint32_t height, float value) {

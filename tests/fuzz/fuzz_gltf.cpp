@@ -96,6 +96,48 @@ std::uint32_t read_u32(const std::uint8_t* at) {
     return value;
 }
 
+// Replaces one number of the JSON by one that likes to go wrong.
+void mutate_number(std::vector<std::uint8_t>& json, unsigned seed) {
+    static constexpr const char* kNumbers[] = {"0",
+                                               "1",
+                                               "2",
+                                               "3",
+                                               "4",
+                                               "255",
+                                               "256",
+                                               "65535",
+                                               "65536",
+                                               "2147483647",
+                                               "2147483648",
+                                               "4294967295",
+                                               "4294967296",
+                                               "9223372036854775808",
+                                               "18446744073709551615",
+                                               "-1",
+                                               "0.5",
+                                               "1e30",
+                                               "-1e30",
+                                               "1e-30",
+                                               "5120",
+                                               "5121",
+                                               "5123",
+                                               "5125",
+                                               "5126"};
+    std::vector<std::size_t> starts;
+    for (std::size_t i = 1; i < json.size(); ++i) {
+        const char before = static_cast<char>(json[i - 1]), at = static_cast<char>(json[i]);
+        if ((before == ':' || before == ',' || before == '[') && (at == '-' || (at >= '0' && at <= '9')))
+            starts.push_back(i);
+    }
+    if (starts.empty()) return;
+    const std::size_t start = starts[seed / 7 % starts.size()];
+    std::size_t end = start;
+    while (end < json.size() && std::strchr("0123456789.eE+-", json[end]) != nullptr && json[end] != 0) ++end;
+    const std::string_view number = kNumbers[seed / 131 % std::size(kNumbers)];
+    json.erase(json.begin() + static_cast<std::ptrdiff_t>(start), json.begin() + static_cast<std::ptrdiff_t>(end));
+    json.insert(json.begin() + static_cast<std::ptrdiff_t>(start), number.begin(), number.end());
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
@@ -113,9 +155,13 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
     std::vector<std::uint8_t> binary;
     if (size - 20 - json_size > 8) binary.assign(data + 28 + json_size, data + size);
     std::vector<std::uint8_t>& target = seed % 4 == 1 && !binary.empty() ? binary : json;
-    const std::size_t before = target.size();
-    target.resize(before + 256);
-    target.resize(LLVMFuzzerMutate(target.data(), before, before + 256));
+    if (seed % 3 == 0) {
+        mutate_number(json, seed);
+    } else {
+        const std::size_t before = target.size();
+        target.resize(before + 256);
+        target.resize(LLVMFuzzerMutate(target.data(), before, before + 256));
+    }
     const auto with_lengths = [](std::vector<std::uint8_t>& out, std::uint32_t type,
                                  const std::vector<std::uint8_t>& chunk) {
         const std::uint32_t words[2] = {static_cast<std::uint32_t>(chunk.size()), type};
