@@ -1,0 +1,22 @@
+// The subcommands of lumel_bench. Each adds itself to the command line and prints CSV to standard output when chosen.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <ctime>
+
+namespace lumel::bench {
+
+void add_trace(CLI::App& app);   // rays per second
+void add_texels(CLI::App& app);  // rasterising pages, sample points
+
+// CPU time of the process, all threads together: the machine's other work does not count.
+class CpuStopwatch {
+public:
+    [[nodiscard]] double seconds() const { return now() - start_; }
+
+private:
+    static double now() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+    double start_ = now();
+};
+
+}  // namespace lumel::bench
