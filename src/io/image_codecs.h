@@ -17,7 +17,7 @@ inline constexpr std::uint32_t kMaxImageEdge = 16384;
 inline constexpr std::uint32_t kMaxTextureEdge = 8192;
 
 // What the first bytes say the file is.
-enum class ImageFormat : std::uint8_t { unknown, png, jpeg, hdr, exr, pfm };
+enum class ImageFormat : std::uint8_t { unknown, png, jpeg, hdr, exr, pfm, pgm };
 ImageFormat image_format(std::span<const std::byte> bytes);
 
 // Width and height positive and at most max_edge; values (pixels times channels) not beyond 64 M plus 128 for each byte
@@ -28,6 +28,7 @@ Status check_image_size(std::uint64_t width, std::uint64_t height, std::uint64_t
 Result<Image> decode_stb(std::span<const std::byte> bytes, const std::string& where);
 Result<Image> decode_hdr(std::span<const std::byte> bytes, const std::string& where);
 Result<Image> decode_pfm(std::span<const std::byte> bytes, const std::string& where);
+Result<Image> decode_pgm(std::span<const std::byte> bytes, const std::string& where);
 Result<Image> decode_exr(std::span<const std::byte> bytes, const std::string& where);
 // Empty `names` means all.
 Result<NamedChannels> decode_exr_channels(std::span<const std::byte> bytes, std::span<const std::string> names,

@@ -41,6 +41,7 @@ ImageFormat image_format(std::span<const std::byte> bytes) {
     if (starts_with(bytes, "PF\n"sv) || starts_with(bytes, "Pf\n"sv) || starts_with(bytes, "PF "sv) ||
         starts_with(bytes, "Pf "sv))
         return ImageFormat::pfm;
+    if (starts_with(bytes, "P5"sv) || starts_with(bytes, "P6"sv)) return ImageFormat::pgm;
     return ImageFormat::unknown;
 }
 
@@ -67,10 +68,11 @@ Result<Image> decode_image(std::span<const std::byte> bytes, const std::string& 
         case ImageFormat::hdr: return decode_hdr(bytes, where);
         case ImageFormat::exr: return decode_exr(bytes, where);
         case ImageFormat::pfm: return decode_pfm(bytes, where);
+        case ImageFormat::pgm: return decode_pgm(bytes, where);
         case ImageFormat::unknown: break;
     }
     return Error{ErrorCode::unsupported, "is no image that Lumel knows", where,
-                 "give PNG, JPEG, Radiance HDR, OpenEXR or PFM"};
+                 "give PNG, JPEG, Radiance HDR, OpenEXR, PFM, PGM or PPM"};
 }
 
 Result<Image> read_image(const std::filesystem::path& path) {

@@ -24,6 +24,12 @@ constexpr std::array<Vec2, kSamplesPerTexel> kHammersley = hammersley_set();
 
 Vec2 subtexel_point(std::uint32_t s) { return kHammersley[s]; }
 
+Vec2 gather_point(std::uint64_t valid, std::uint32_t s) {
+    if (~valid != 0) return kHammersley[s];
+    const Vec2 centre{0.5f, 0.5f};
+    return centre + (kHammersley[s] - centre) * kGatherFootprint;
+}
+
 std::vector<std::vector<std::uint32_t>> triangles_by_page(const Scene& scene, const WorldGeometry& geometry,
                                                           const ChartSet& charts, const Atlas& atlas) {
     std::vector<std::vector<std::uint32_t>> pages(atlas.pages.size());
@@ -35,6 +41,25 @@ std::vector<std::vector<std::uint32_t>> triangles_by_page(const Scene& scene, co
     }
     return pages;
 }
+
+namespace {
+
+// Writes the surface point of each valid point, in order of s; whether all were found in a triangle.
+template <class UvOf>
+bool locate_all(const TexelSamples& samples, std::uint64_t valid, std::span<const std::uint32_t> triangles, UvOf&& uv,
+                std::span<SamplePoint, kSamplesPerTexel> out) {
+    std::uint64_t missing = valid;
+    for (const std::uint32_t triangle : triangles) {
+        samples.for_each_inside(uv(triangle), missing, [&](std::uint32_t s, Barycentrics b) {
+            out[rank(valid, s)] = {triangle, b.b1, b.b2};
+            missing &= ~(std::uint64_t{1} << s);
+        });
+        if (missing == 0) return true;
+    }
+    return false;
+}
+
+}  // namespace
 
 std::uint32_t sample_points(const TexelBuffer& texels, std::size_t texel, const Scene& scene,
                             const WorldGeometry& geometry, const ChartSet& charts, const Atlas& atlas,
@@ -50,15 +75,13 @@ std::uint32_t sample_points(const TexelBuffer& texels, std::size_t texel, const 
         out[0] = samples.middle_of_largest_part(triangles, uv);
         return 1;
     }
-    std::uint64_t missing = valid;
-    for (const std::uint32_t triangle : triangles) {
-        samples.for_each_inside(uv(triangle), missing, [&](std::uint32_t s, Barycentrics b) {
-            out[rank(valid, s)] = {triangle, b.b1, b.b2};
-            missing &= ~(std::uint64_t{1} << s);
-        });
-        if (missing == 0) break;
-    }
-    LUMEL_CHECK(missing == 0, texels.page, texels.x[texel], texels.y[texel]);
+    constexpr std::uint64_t kAll = ~std::uint64_t{0};
+    if (valid == kAll &&
+        locate_all(TexelSamples::gathering(texels.x[texel], texels.y[texel]), valid, triangles, uv, out))
+        return kSamplesPerTexel;
+    // On the rim; or a shrunk point fell into a crack between two triangles, which the others do not.
+    const bool found = locate_all(samples, valid, triangles, uv, out);
+    LUMEL_CHECK(found, texels.page, texels.x[texel], texels.y[texel]);
     return static_cast<std::uint32_t>(std::popcount(valid));
 }
 

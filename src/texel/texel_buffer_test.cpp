@@ -277,6 +277,36 @@ TEST(TexelBuffer, ValidMaskIsTheUnionOfTheOwnersTriangles) {
         }
 }
 
+// Whole texels gather from the middle half, at the points that gather_point names; those of the rim from wherever they
+// are covered. 1e-5: barycentrics are floats.
+TEST(TexelBuffer, CoveredTexelsGatherFromTheirMiddle) {
+    FlatPage page;
+    page.add_quad({2.25f, 3}, {5, 0}, {0, 4});
+    const BakedPage baked(page);
+    const TexelBuffer& t = baked.texels;
+    std::size_t whole = 0, rim = 0;
+    for (std::size_t i = 0; i < t.size(); ++i) {
+        const auto points = baked.samples(i);
+        std::size_t k = 0;
+        for (std::uint32_t s = 0; s < kSamplesPerTexel; ++s) {
+            if (!((t.valid[i] >> s) & 1)) continue;
+            const auto [triangle, b1, b2] = points[k++];
+            const auto uv = baked.uv(triangle);
+            const Vec2 p = uv[0] * (1.0f - b1 - b2) + uv[1] * b1 + uv[2] * b2 - Vec2{float(t.x[i]), float(t.y[i])};
+            const Vec2 expected = gather_point(t.valid[i], s);
+            ASSERT_NEAR(p.x, expected.x, 1e-5);
+            ASSERT_NEAR(p.y, expected.y, 1e-5);
+            if (t.valid[i] == kAll) {
+                ASSERT_NEAR(p.x, 0.5, 0.25);
+                ASSERT_NEAR(p.y, 0.5, 0.25);
+            }
+        }
+        ++(t.valid[i] == kAll ? whole : rim);
+    }
+    EXPECT_EQ(whole, 4u * 4u);
+    EXPECT_EQ(rim, 2u * 4u);
+}
+
 TEST(TexelBuffer, CancelStops) {
     FlatPage page;
     page.add_quad({2, 3}, {5, 0}, {0, 4});

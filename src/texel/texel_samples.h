@@ -20,13 +20,22 @@ class TexelSamples {
 public:
     TexelSamples(std::uint32_t x, std::uint32_t y) : left_(x), top_(y) {}
 
+    // The points of a texel that is covered whole, where it gathers from.
+    static TexelSamples gathering(std::uint32_t x, std::uint32_t y) {
+        TexelSamples samples(x, y);
+        samples.scale_ = double{kGatherFootprint};
+        samples.left_ += 0.5 - 0.5 * samples.scale_;
+        samples.top_ += 0.5 - 0.5 * samples.scale_;
+        return samples;
+    }
+
     // Calls visit(s, barycentrics) for each point of the set `wanted` that lies in the triangle.
     template <class Visit>
     void for_each_inside(const TexelTriangle& triangle, std::uint64_t wanted, Visit&& visit) const {
         for (; wanted != 0; wanted &= wanted - 1) {
             const auto s = static_cast<std::uint32_t>(std::countr_zero(wanted));
             const Vec2 p = subtexel_point(s);
-            if (const auto b = triangle.locate(left_ + double{p.x}, top_ + double{p.y})) visit(s, *b);
+            if (const auto b = triangle.locate(left_ + scale_ * double{p.x}, top_ + scale_ * double{p.y})) visit(s, *b);
         }
     }
 
@@ -85,7 +94,7 @@ private:
         return {};
     }
 
-    double left_, top_;
+    double left_, top_, scale_ = 1.0;
 };
 
 }  // namespace lumel

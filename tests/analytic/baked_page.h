@@ -111,7 +111,7 @@ struct Square {
     [[nodiscard]] double mean_over(const BakedTexel& texel, Function&& function) const {
         double sum = 0;
         for (std::uint32_t s = 0; s < kSamplesPerTexel; ++s) {
-            const Vec2 p = subtexel_point(s);
+            const Vec2 p = gather_point(~std::uint64_t{0}, s);  // every texel of the square is covered whole
             const float a = (static_cast<float>(texel.x) + p.x) / kTexels;
             const float b = (static_cast<float>(texel.y) + p.y) / kTexels;
             sum += function(corner + u * a + v * b);
