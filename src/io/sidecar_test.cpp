@@ -154,6 +154,55 @@ TEST(Sidecar, ReadsASkyMapBesideItself) {
     EXPECT_NE(without.error().find("gone.hdr"), std::string::npos) << without.error();
 }
 
+std::string text_of(const char* file) {
+    const auto bytes = read_file(std::filesystem::path(LUMEL_SOURCE_DIR) / file, 1 << 20);
+    EXPECT_TRUE(bytes.ok()) << file;
+    return bytes.ok() ? std::string(reinterpret_cast<const char*>(bytes->data()), bytes->size()) : std::string();
+}
+
+TEST(Sidecar, TheExampleOfTheDocumentationIsRead) {
+    const std::string page = text_of("docs/sidecar.md");
+    const std::size_t begin = page.find("```json\n") + 8;
+    const auto sidecar = parse_sidecar(page.substr(begin, page.find("```", begin) - begin), "docs/sidecar.md");
+    ASSERT_TRUE(sidecar.ok()) << sidecar.error().text();
+    EXPECT_EQ(sidecar->area_lights.size(), 3u);
+    EXPECT_EQ(sidecar->nodes.size(), 3u);
+}
+
+// No key of the schema is unknown to the parser, and the schema lists every key that the parser lists.
+TEST(Sidecar, SchemaAndParserKnowTheSameKeys) {
+    const auto schema = nlohmann::json::parse(text_of("docs/schema/scene.lumel.schema.json"));
+    const auto expect_known = [](const nlohmann::json& properties, const std::string& before,
+                                 const std::string& after) {
+        std::string known;
+        for (const auto& property : properties.items()) {
+            // null is no value of any key, so that every known key is refused for its value.
+            const auto sidecar = parse_sidecar(before + "\"" + property.key() + "\": null" + after, "t");
+            EXPECT_TRUE(sidecar.ok() || sidecar.error().message.find("unknown key") == std::string::npos)
+                << property.key();
+            known += " " + property.key();
+        }
+        const auto unknown = parse_sidecar(before + "\"no such key\": null" + after, "t");
+        ASSERT_FALSE(unknown.ok());
+        std::string listed = unknown.error().remedy.substr(std::string("known keys: ").size()) + ",";
+        for (std::size_t comma = 0; (comma = listed.find(',')) != std::string::npos; listed.erase(0, comma + 2)) {
+            const std::string key = listed.substr(0, comma);
+            EXPECT_TRUE(properties.contains(key)) << key << " is not in the schema, which has" << known;
+        }
+    };
+    expect_known(schema["properties"], "{", "}");
+    expect_known(schema["$defs"]["light"]["properties"], "{\"lights\": {\"a\": {", "}}}");
+    expect_known(schema["$defs"]["node"]["properties"], "{\"nodes\": {\"a\": {", "}}}");
+    expect_known(schema["$defs"]["sky"]["properties"], "{\"sky\": {", "}}");
+    auto area = schema["$defs"]["area_light"]["properties"];
+    area.erase("radius");
+    expect_known(area, "{\"area_lights\": [{\"shape\": \"rectangle\", ", "}]}");
+    area = schema["$defs"]["area_light"]["properties"];
+    area.erase("width");
+    area.erase("height");
+    expect_known(area, "{\"area_lights\": [{\"shape\": \"disc\", ", "}]}");
+}
+
 struct Fault {
     const char* expected;
     const char* sidecar;
