@@ -17,12 +17,12 @@ namespace {
 struct Options {
     std::string scene, output, resolution, max_memory, progress;
     std::string preset = "medium", uv1 = "automatic", stop = "fixed";
-    std::uint32_t views = 2;
+    std::uint32_t views = 2, view_samples = 32;
     BakeOptions values;
     LightOptions light;
 };
 
-constexpr PictureOptions kViewPicture{384, 216, 32};
+constexpr std::uint32_t kViewWidth = 384, kViewHeight = 216;
 constexpr std::uint32_t kViewGutter = 4;  // pixels between truth and bake
 
 Result<BakeOptions> read_options(const Options& options) {
@@ -64,8 +64,8 @@ std::vector<std::uint8_t> side_by_side(const Image& truth, const Image& baked) {
 }
 
 // preview_view_<k>.png from the files just written: what the pictures show is what a user gets.
-Status write_views(const BakeWriter& writer, const Scene& scene, const BakeOptions& options, std::uint32_t count,
-                   Context& context) {
+Status write_views(const BakeWriter& writer, const Scene& scene, const BakeOptions& options,
+                   const PictureOptions& picture, std::uint32_t count, Context& context) {
     if (count == 0) return success();
     LUMEL_TRY(const WorldGeometry geometry, flatten(scene, context));
     const SurfaceReader surfaces(scene, geometry);
@@ -81,11 +81,10 @@ Status write_views(const BakeWriter& writer, const Scene& scene, const BakeOptio
     path.seed = options.seed;
     LUMEL_TRY(const std::vector<Camera> views, choose_views(transport, count, context));
     for (std::size_t k = 0; k < views.size(); ++k) {
-        LUMEL_TRY(const Image truth, render_picture(transport, path, views[k], kViewPicture, nullptr, context));
-        LUMEL_TRY(const Image lit, render_picture(transport, path, views[k], kViewPicture, &lookup, context));
+        LUMEL_TRY(const Image truth, render_picture(transport, path, views[k], picture, nullptr, context));
+        LUMEL_TRY(const Image lit, render_picture(transport, path, views[k], picture, &lookup, context));
         LUMEL_TRY_STATUS(write_png(writer.folder() / ("preview_view_" + std::to_string(k) + ".png"),
-                                   2 * kViewPicture.width + kViewGutter, kViewPicture.height, 3,
-                                   side_by_side(truth, lit)));
+                                   2 * picture.width + kViewGutter, picture.height, 3, side_by_side(truth, lit)));
     }
     return success();
 }
@@ -116,7 +115,8 @@ Status run(const Options& options) {
     sink.page = [&](const Lightmap& page) { return writer.page(page); };
     LUMEL_TRY(const BakeReport report, bake(loaded.scene, bake_options, sink, context));
     LUMEL_TRY_STATUS(writer.write_scene());
-    LUMEL_TRY_STATUS(write_views(writer, loaded.scene, bake_options, options.views, context));
+    LUMEL_TRY_STATUS(write_views(writer, loaded.scene, bake_options, {kViewWidth, kViewHeight, options.view_samples},
+                                 options.views, context));
     LUMEL_TRY_STATUS(writer.finish(report, context.diagnostics));
     run_context.finish();
     print_summary(report, options.output);
@@ -134,6 +134,9 @@ Run add_bake(CLI::App& app) {
                    "preview, medium or production: texels and samples where not asked otherwise")
         ->check(CLI::IsMember({"preview", "medium", "production"}));
     app.add_option("--views", options->views, "Camera views rendered beside the truth")->check(CLI::Range(0u, 16u));
+
+    app.add_option("--view-samples", options->view_samples, "Paths per pixel of those views")
+        ->check(CLI::Range(1u, 1u << 16));
 
     const std::string texels = "Texels";
     app.add_option("--texels-per-metre", values.texels_per_metre, "Density (0: from the preset's texel budget)")
