@@ -59,19 +59,15 @@ void merge_charts_sharing_texels(const Scene& scene, ChartSet& charts, AtlasPage
         while (root[c] != c) c = root[c] = root[root[c]];
         return c;
     };
-    struct Owner {
-        std::uint32_t mesh = kNone, chart = 0;
-    };
-    std::vector<Owner> owner(std::size_t{page.width} * page.height);
+    // The first chart at each texel. Of two meshes the first keeps the texel: nodes are never merged.
+    std::vector<std::uint32_t> owner(std::size_t{page.width} * page.height, kNone);
     for_each_texel(scene, charts, page, [&](std::uint32_t i, std::uint32_t chart, std::size_t texel) {
-        const std::uint32_t mesh = scene.instances[i].mesh;
-        Owner& o = owner[texel];
-        if (o.mesh == mesh && o.chart != chart) {
-            const std::uint32_t a = find(first[mesh] + o.chart), b = find(first[mesh] + chart);
-            root[std::max(a, b)] = std::min(a, b);
-        } else if (o.mesh == kNone) {
-            o = {mesh, chart};
-        }
+        const std::uint32_t mesh = scene.instances[i].mesh, self = first[mesh] + chart;
+        std::uint32_t& o = owner[texel];
+        if (o == kNone) o = self;
+        if (o == self || o < first[mesh] || o >= first[mesh + 1]) return;
+        const std::uint32_t a = find(o), b = find(self);
+        root[std::max(a, b)] = std::min(a, b);
     });
     for (std::size_t m = 0; m < charts.meshes.size(); ++m) {
         MeshCharts& mesh = charts.meshes[m];
