@@ -183,22 +183,27 @@ TEST(LitTexture, IsAlbedoTimesIrradianceOverItsStrength) {
     }
 }
 
-TEST(LitTexture, LampsKeepTheirHueAndDoNotDarkenTheRest) {
+TEST(LitTexture, LampsStandOutButDoNotDarkenTheRest) {
     Lightmap map = made_up_page(0, 30, 30);
     const float strength = lit_texture(map, kAll).strength;
-    map.surface.emission[0] = {4000, 2000, 0};
+    EXPECT_NEAR(strength, 1.11 * 3 * 600, 1e-2);  // the brightest texel's blue
+    map.surface.emission[0] = {400000, 200000, 0};
     const LitTexture texture = lit_texture(map, kAll);
-    EXPECT_EQ(texture.strength, strength);
+    // Twice the 99.9th percentile of 600 texels, which is the one before the last.
+    EXPECT_NEAR(texture.strength, 2 * 1.11 * 3 * 599, 1e-2);
     const auto image = decode_image(texture.png, "texture");
     ASSERT_TRUE(image.ok());
     EXPECT_EQ(image->data[0], 1.0f);
-    EXPECT_NEAR(srgb_decode(image->data[1]), 0.5, 0.01);
+    EXPECT_EQ(image->data[1], 1.0f);
+    EXPECT_LT(image->data[2], 0.1f);
 }
 
 TEST(LitTexture, ABlackPageHasAUsableStrength) {
     Lightmap map = made_up_page(0, 8, 8);
     for (auto& layers : map.texels.layers) layers = {};
     EXPECT_EQ(lit_texture(map, kAll).strength, 1.0f);
+    map.surface.emission[0] = {0, 7, 0};
+    EXPECT_EQ(lit_texture(map, kAll).strength, 7.0f);
 }
 
 TEST(Preview, IsTheMeanOfCoveredTexels) {

@@ -206,17 +206,19 @@ private:
     ManifestPage out_;
 };
 
-// The brightest reflected light but for the last thousandth: fireflies and lamps do not set the scale of 8 bits.
-float display_strength(const std::vector<Vec3>& reflected) {
+// Twice the brightest reflected light but for the last thousandth, or the brightest of all where that is less:
+// fireflies and lamps do not set the scale of 8 bits, and lamps still stand out.
+float display_strength(const std::vector<Vec3>& reflected, float brightest) {
     constexpr double kFraction = 0.999;
+    constexpr float kHeadroom = 2.0f;
     std::vector<float> peaks;
     peaks.reserve(reflected.size());
     for (const Vec3& v : reflected)
         if (const float peak = max_component(v); peak > 0.0f && std::isfinite(peak)) peaks.push_back(peak);
-    if (peaks.empty()) return 1.0f;
+    if (peaks.empty()) return brightest > 0.0f ? brightest : 1.0f;
     const auto at = peaks.begin() + static_cast<std::ptrdiff_t>(kFraction * static_cast<double>(peaks.size() - 1));
     std::nth_element(peaks.begin(), at, peaks.end());
-    return *at;
+    return std::min(kHeadroom * *at, brightest);
 }
 
 }  // namespace
@@ -234,14 +236,17 @@ LitTexture lit_texture(const Lightmap& map, const LayerWeights& weights) {
         light[t] = map.surface.albedo[t] * to_file_unit(irradiance, LightUnit::e_over_pi);
     }
     LitTexture out;
-    out.strength = display_strength(light);
+    float brightest = 0.0f;
+    for (std::size_t t = 0; t < light.size(); ++t)
+        if (const Vec3 sum = light[t] + map.surface.emission[t]; is_finite(sum))
+            brightest = std::max(brightest, max_component(sum));
+    out.strength = display_strength(light, brightest);
     std::vector<std::uint8_t> pixels(map.texel_at.size() * 3);
     for (std::size_t i = 0; i < map.texel_at.size(); ++i) {
         const std::uint32_t t = map.texel_at[i];
         if (t == kNone) continue;
         const Vec3 value = (light[t] + map.surface.emission[t]) / out.strength;
-        const Vec3 shown = value / std::max(1.0f, max_component(value));
-        for (std::size_t c = 0; c < 3; ++c) pixels[3 * i + c] = srgb8(shown[c]);
+        for (std::size_t c = 0; c < 3; ++c) pixels[3 * i + c] = srgb8(value[c]);
     }
     out.png = encode_png(map.width, map.height, 3, pixels);
     return out;

@@ -24,8 +24,8 @@ struct PagePreview {
 Result<ManifestPage> write_page_files(const std::filesystem::path& folder, const Lightmap& map,
                                       const LayerWeights& weights);
 
-// albedo x I + emission as 8-bit sRGB over its strength. Strength is near the brightest reflected light of the page;
-// emitters brighter than that are shown at it, in their hue.
+// albedo x I + emission as 8-bit sRGB over its strength. Strength is at most twice the brightest reflected light of the
+// page; lamps brighter than that are cut to it, channel by channel, as a screen would.
 LitTexture lit_texture(const Lightmap& map, const LayerWeights& weights);
 
 // At most `max_edge` texels along the longer side.
