@@ -86,10 +86,10 @@ inline void expect_texels(const std::vector<BakedTexel>& texels, const Expected&
     }
 }
 
-// A square of one chart that fills a page of 16 x 16 texels: texel (x, y) is known in the world.
+// A square of one chart that fills a square page: texel (x, y) is known in the world.
 struct Square {
-    static constexpr std::uint32_t kTexels = 16;
-    Vec3 corner, u, v;  // faces along u x v
+    Vec3 corner, u, v;        // faces along u x v
+    std::uint32_t edge = 16;  // texels
 
     [[nodiscard]] Vec3 normal() const { return normalize(cross(u, v)); }
 
@@ -99,9 +99,9 @@ struct Square {
             mesh.uv1 = mesh.uv0;
         });
     }
-    static BakeOptions options(std::uint32_t samples) {
+    [[nodiscard]] BakeOptions options(std::uint32_t samples) const {
         BakeOptions options;
-        options.resolution_width = options.resolution_height = kTexels;
+        options.resolution_width = options.resolution_height = edge;
         options.uv1 = Uv1Choice::scene;
         options.samples = samples;
         return options;
@@ -112,8 +112,8 @@ struct Square {
         double sum = 0;
         for (std::uint32_t s = 0; s < kSamplesPerTexel; ++s) {
             const Vec2 p = gather_point(~std::uint64_t{0}, s);  // every texel of the square is covered whole
-            const float a = (static_cast<float>(texel.x) + p.x) / kTexels;
-            const float b = (static_cast<float>(texel.y) + p.y) / kTexels;
+            const float a = (static_cast<float>(texel.x) + p.x) / static_cast<float>(edge);
+            const float b = (static_cast<float>(texel.y) + p.y) / static_cast<float>(edge);
             sum += function(corner + u * a + v * b);
         }
         return sum / kSamplesPerTexel;

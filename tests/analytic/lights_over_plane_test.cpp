@@ -19,8 +19,8 @@ constexpr Vec3 kUp{0, 1, 0};
 // `irradiance(point)`: E of a light of unit strength.
 template <class Irradiance>
 void expect_floor(const Scene& scene, std::uint32_t samples, Irradiance&& irradiance) {
-    const auto texels = test::bake_texels(scene, test::Square::options(samples));
-    ASSERT_EQ(texels.size(), test::Square::kTexels * test::Square::kTexels);
+    const auto texels = test::bake_texels(scene, kFloor.options(samples));
+    ASSERT_EQ(texels.size(), kFloor.edge * kFloor.edge);
     test::expect_texels(
         texels,
         [&](const test::BakedTexel& texel) {
