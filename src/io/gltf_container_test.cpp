@@ -110,6 +110,10 @@ TEST(GltfContainer, RefusesAChunkThatReachesBeyondTheFile) {
     bytes[12] = std::byte{0xff};
     bytes[13] = std::byte{0xff};
     EXPECT_NE(error_of(bytes).find("chunk 0 reaches beyond"), std::string::npos);
+    // As many bytes as the file has, which are more than follow the chunk's head.
+    bytes[12] = static_cast<std::byte>(bytes.size() & 255);
+    bytes[13] = static_cast<std::byte>(bytes.size() >> 8);
+    EXPECT_NE(error_of(bytes).find("chunk 0 reaches beyond"), std::string::npos);
 }
 
 TEST(GltfContainer, RefusesOtherVersions) {

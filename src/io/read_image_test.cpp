@@ -62,10 +62,15 @@ TEST(DecodeHdr, ReadsOldRunLengths) {
     const auto image = decode(hdr("-Y 1 +X 4", kOne + std::string("\x01\x01\x01\x03", 4)));
     ASSERT_TRUE(image.ok()) << image.error().text();
     EXPECT_EQ(image->at(3, 0)[1], 0.5f);
+    // Two codes in a row: 3, then 1 shifted by eight bits.
+    const auto wide = decode(hdr("-Y 1 +X 260", kOne + std::string("\x01\x01\x01\x03\x01\x01\x01\x01", 8)));
+    ASSERT_TRUE(wide.ok()) << wide.error().text();
+    EXPECT_EQ(wide->at(259, 0)[1], 0.5f);
 }
 
 TEST(DecodeHdr, RefusesDamage) {
     EXPECT_NE(error_of(hdr("-Y 2 +X 1", kOne)).find("ends within the pixels"), std::string::npos);
+    EXPECT_NE(error_of(hdr("-Y 1 +X 2", kOne)).find("ends within the pixels"), std::string::npos);
     EXPECT_NE(error_of(hdr("-Y 1 +X 4", kOne + std::string("\x01\x01\x01\x09", 4))).find("leaves its row"),
               std::string::npos);
     EXPECT_NE(error_of(hdr("-Y 1 +X 8", std::string("\x02\x02\x00\x08\x89\x80", 6))).find("leaves its row"),
@@ -185,6 +190,8 @@ TEST(DecodeExr, RefusesImpossibleAttributes) {
     const std::string window("dataWindow\0box2i\0", 17);
     EXPECT_EQ(size_of(whole, window, 16), "no error");
     EXPECT_NE(size_of(whole, window, 12).find("impossible size"), std::string::npos);
+    // 40 bytes more end after the next attribute, displayWindow: a walk that believed the size would miss it.
+    EXPECT_NE(size_of(whole, window, 16 + 40).find("impossible size"), std::string::npos);
     EXPECT_NE(size_of(whole, window, 0x70000000).find("impossible size"), std::string::npos);
     EXPECT_NE(size_of(whole, std::string("channels\0chlist\0", 16), 40).find("impossible size"), std::string::npos);
 }
