@@ -83,7 +83,9 @@ inline void add_quad(Mesh& mesh, Vec3 origin, Vec3 u, Vec3 v) {
 inline void add_box(Mesh& mesh, Vec3 low, Vec3 high, bool inward) {
     const Vec3 d = high - low;
     const Vec3 x{d.x, 0, 0}, y{0, d.y, 0}, z{0, 0, d.z};
-    const auto face = [&](Vec3 origin, Vec3 u, Vec3 v) { inward ? add_quad(mesh, origin, v, u) : add_quad(mesh, origin, u, v); };
+    const auto face = [&](Vec3 origin, Vec3 u, Vec3 v) {
+        inward ? add_quad(mesh, origin, v, u) : add_quad(mesh, origin, u, v);
+    };
     face(low, y, x);
     face(low + z, x, y);
     face(low, z, y);
