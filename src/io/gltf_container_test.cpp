@@ -182,6 +182,8 @@ TEST(ParseJson, RefusesWhatWouldTakeTooLong) {
     EXPECT_NE(parse_json("{\"a\": 1e999}", "t").error().text().find("JSON"), std::string::npos);
     const std::string place = parse_json("{\"a\": tru}", "t").error().text();
     EXPECT_NE(place.find("byte 10"), std::string::npos) << place;
+    const std::string bytes = parse_json("{\"a\": \"\xff\x98\"}", "t").error().text();
+    for (const char c : bytes) EXPECT_GE(c, ' ') << "the message repeats no raw bytes: " << bytes;
 }
 
 }  // namespace

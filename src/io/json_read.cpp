@@ -33,9 +33,11 @@ public:
         return comparisons_ <= kMaxKeyComparisons || stop("an object has too many keys");
     }
     bool parse_error(std::size_t position, const std::string&, const nlohmann::detail::exception& error) override {
-        // The library's text begins with its own error number: "[json.exception.parse_error.101] ".
+        // The library's text is "[json.exception.parse_error.101] parse error at line 1, column 2: syntax error ...;
+        // last read: '...'": its own number and the file's raw bytes, which may be no text at all, are of no use.
         std::string text = error.what();
         if (const std::size_t bracket = text.find("] "); bracket != std::string::npos) text = text.substr(bracket + 2);
+        text = text.substr(0, text.find("; last read"));
         return stop("is no valid JSON at byte " + std::to_string(position) + ": " + text);
     }
 
