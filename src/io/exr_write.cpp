@@ -35,9 +35,13 @@ private:
     AtomicFile* file_;
 };
 
+// Of 1..9. On noisy masters 1 is a quarter faster than the library's 4 and three percent larger.
+constexpr int kZipLevel = 1;
+
 exr::Header make_header(std::uint32_t width, std::uint32_t height, std::span<const ExrChannelSource> channels) {
     exr::Header header(static_cast<int>(width), static_cast<int>(height));
     header.compression() = exr::ZIP_COMPRESSION;
+    header.zipCompressionLevel() = kZipLevel;
     for (const ExrChannelSource& channel : channels) {
         LUMEL_CHECK(header.channels().findChannel(channel.name.c_str()) == nullptr, channel.name);
         header.channels().insert(channel.name.c_str(),

@@ -1,5 +1,5 @@
 // node check.mjs --out FOLDER --modules NODE_MODULES --camera NAME|'eye;target;fov' --reference VIEW.pfm
-//                [--mode plain|lightmap] [--max-median 0.02] [--png PICTURE.png]
+//                [--mode plain|lightmap] [--max-median 0.02] [--max-missing 1] [--png PICTURE.png]
 // Renders FOLDER/scene.glb with stock three.js in headless Chromium and compares with `lumel render --baked` of the same
 // view. Exit code 0 agrees, 1 differs, 77 no browser.
 import { createReadStream, existsSync, readFileSync, writeFileSync } from 'node:fs';
@@ -18,6 +18,7 @@ const { values: options } = parseArgs({
     reference: { type: 'string' },
     mode: { type: 'string', default: 'plain' },
     'max-median': { type: 'string', default: '0.02' },
+    'max-missing': { type: 'string', default: '1' },
     png: { type: 'string' },
   },
 });
@@ -68,7 +69,7 @@ function parseCamera(text) {
 
 const percentile = (sorted, p) => sorted[Math.floor(p * (sorted.length - 1))];
 
-// Relative error per pixel where both show something.
+// Relative error per pixel where both show something; alpha 0 is the background.
 function compare(pixels, reference) {
   const errors = [];
   let sum = 0, reference_sum = 0, missing = 0;
@@ -81,7 +82,10 @@ function compare(pixels, reference) {
       shown += x;
     }
     if (size <= 0) continue;
-    if (shown <= 0) ++missing;
+    if (pixels[4 * i + 3] === 0) {
+      ++missing; // the sky, which the file does not hold
+      continue;
+    }
     sum += Math.min(shown, 10 * size);
     reference_sum += size;
     errors.push(error / size);
@@ -125,7 +129,8 @@ try {
   const pixels = new Float32Array(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.length));
   const figures = compare(pixels, reference);
   console.log(JSON.stringify({ mode: options.mode, ...result.counts, ...figures }));
-  const enough = figures.pixels > 0.1 * reference.width * reference.height;
+  const all = reference.width * reference.height;
+  const enough = figures.pixels > 0.1 * all && figures.missing <= Number(options['max-missing']) * all;
   failed ||= !enough || !(figures.median <= Number(options['max-median']));
 } finally {
   await browser.close();

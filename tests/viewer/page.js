@@ -13,6 +13,7 @@ function findCamera(root, name) {
 // mode: 'plain' shows the file as it is; 'lightmap' puts the original materials back, lit by the HDR lightmaps.
 window.renderView = async ({ mode, view, width, height }) => {
   const renderer = new THREE.WebGLRenderer();
+  renderer.setClearAlpha(0); // tells background from black
   const gltf = await new GLTFLoader().loadAsync('/out/scene.glb');
   if (mode === 'lightmap') await useLightmaps(gltf, '/out/');
   const scene = new THREE.Scene();
