@@ -8,6 +8,7 @@ namespace lumel::bench {
 
 void add_trace(CLI::App& app);   // rays per second
 void add_texels(CLI::App& app);  // rasterising pages, sample points
+void add_replay(CLI::App& app);  // the bake against its own rays
 
 // CPU time of the process, all threads together: the machine's other work does not count.
 class CpuStopwatch {

@@ -9,6 +9,7 @@ int main(int argc, char** argv) {
     app.require_subcommand(1);
     lumel::bench::add_trace(app);
     lumel::bench::add_texels(app);
+    lumel::bench::add_replay(app);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -31,7 +31,7 @@ struct Include {
 enum class StopRule : std::uint8_t {
     fixed,  // every texel takes `samples`
     flux,   // Frostbite 2018: every 10 % of the budget, stop where the texel's own standard error is within `error` of
-           // its mean at `confidence`. Biased dark on rare-event light; kept as the published baseline
+            // its mean at `confidence`. Biased dark on rare-event light; kept as the published baseline
 };
 
 struct SunOptions {

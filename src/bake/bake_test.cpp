@@ -13,8 +13,8 @@
 namespace lumel {
 namespace {
 
-// A room with one side open to the sky, a box and a ball of few facets in it, a lamp, a sun and a point light: every kind
-// of path.
+// A room with one side open to the sky, a box and a ball of few facets in it, a lamp, a sun and a point light: every
+// kind of path.
 Scene room() {
     test::SceneBuilder b;
     const auto white = b.material({0.8f, 0.8f, 0.7f});
@@ -25,8 +25,12 @@ Scene room() {
         test::add_quad(m, {0, 0, 0}, {3, 0, 0}, {0, 2, 0});
         test::add_quad(m, {0, 0, 2}, {0, 0, -2}, {0, 2, 0});
     });
-    const auto box = b.object("box", red, [](Mesh& m) { test::add_box(m, {-0.3f, 0, -0.3f}, {0.3f, 0.6f, 0.3f}, false); },
-                              Affine{{Vec3{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {1, 0, 1}});
+    const auto box = b.object(
+        "box", red,
+        [](Mesh& m) {
+            test::add_box(m, {-0.3f, 0, -0.3f}, {0.3f, 0.6f, 0.3f}, false);
+        },
+        Affine{{Vec3{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {1, 0, 1}});
     b.instance("box 2", b.scene().instances[box].mesh, Affine{{Vec3{-1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {2.2f, 0, 0.8f}});
     b.object("lamp", lamp, [](Mesh& m) { test::add_quad(m, {1, 1.9f, 1}, {0.4f, 0, 0}, {0, 0, 0.4f}); });
     Light& sun = b.light(LightShape::sun);
@@ -120,8 +124,7 @@ TEST(Bake, AnySplitOfTheTexelsGivesTheSameBits) {
         hash_sums(hasher, sums);
         return hasher.finish().hex();
     };
-    const RadianceSums whole =
-        gather_page(texels, charts, atlas, transport, path, 0, texels.size(), context).value();
+    const RadianceSums whole = gather_page(texels, charts, atlas, transport, path, 0, texels.size(), context).value();
     for (const std::size_t shards : {3u, 7u}) {
         RadianceSums merged;
         merged.resize(texels.size());
@@ -147,7 +150,8 @@ TEST(Bake, NoLightIsAnErrorThatNamesTheRemedy) {
     const auto white = b.material({0.8f, 0.8f, 0.8f});
     b.object("floor", white, [](Mesh& m) { test::add_quad(m, {0, 0, 0}, {0, 0, 1}, {1, 0, 0}); });
     Context context(1);
-    BakeSink sink{[](const auto&, const auto&, const auto&) { return success(); }, [](const auto&) { return success(); }};
+    BakeSink sink{[](const auto&, const auto&, const auto&) { return success(); },
+                  [](const auto&) { return success(); }};
     const auto result = bake(b.build(), {}, sink, context);
     ASSERT_FALSE(result.ok());
     EXPECT_NE(result.error().text().find("--sky"), std::string::npos);
@@ -157,7 +161,8 @@ TEST(Bake, TooLittleMemoryIsAnErrorThatSaysHowMuchIsNeeded) {
     BakeOptions options = small_options();
     options.max_memory_bytes = 1 << 20;
     Context context(1);
-    BakeSink sink{[](const auto&, const auto&, const auto&) { return success(); }, [](const auto&) { return success(); }};
+    BakeSink sink{[](const auto&, const auto&, const auto&) { return success(); },
+                  [](const auto&) { return success(); }};
     const auto result = bake(room(), options, sink, context);
     ASSERT_FALSE(result.ok());
     EXPECT_EQ(result.error().code, ErrorCode::out_of_memory);
