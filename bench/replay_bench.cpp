@@ -1,0 +1,148 @@
+// How near the bake comes to the speed of its ray tracer: some texels of a scene are gathered with a tracer that keeps
+// every batch; then the batches are traced again, alone. One thread, CPU time.
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <memory>
+#include <vector>
+
+#include "bench.h"
+#include "chart/chart_set.h"
+#include "light/light_set.h"
+#include "load.h"
+#include "lumel/bake.h"
+#include "path/path_integrator.h"
+#include "texel/texel_buffer.h"
+
+namespace lumel::bench {
+namespace {
+
+// Passes queries on and keeps their rays. Not thread-safe.
+class RecordingTracer final : public Tracer {
+public:
+    explicit RecordingTracer(const Tracer& tracer) : tracer_(tracer) {}
+
+    void closest(std::span<const Ray> rays, std::span<Hit> hits) const override {
+        keep(rays, true);
+        tracer_.closest(rays, hits);
+    }
+    void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) const override {
+        keep(rays, false);
+        tracer_.occluded(rays, blocked);
+    }
+    [[nodiscard]] TraceStatistics statistics() const override { return tracer_.statistics(); }
+    [[nodiscard]] std::string_view description() const override { return tracer_.description(); }
+
+    [[nodiscard]] std::size_t ray_count() const { return rays_.size(); }
+    [[nodiscard]] std::size_t batch_count() const { return batches_.size(); }
+
+    void replay() const {
+        std::vector<Hit> hits;
+        std::vector<std::uint8_t> blocked;
+        std::size_t first = 0;
+        for (const Batch& batch : batches_) {
+            const auto rays = std::span(rays_).subspan(first, batch.count);
+            hits.resize(std::max(hits.size(), rays.size()));
+            blocked.resize(hits.size());
+            if (batch.closest) {
+                tracer_.closest(rays, std::span(hits).first(rays.size()));
+            } else {
+                tracer_.occluded(rays, std::span(blocked).first(rays.size()));
+            }
+            first += batch.count;
+        }
+    }
+
+private:
+    struct Batch {
+        std::size_t count;
+        bool closest;
+    };
+    void keep(std::span<const Ray> rays, bool closest) const {
+        rays_.insert(rays_.end(), rays.begin(), rays.end());
+        batches_.push_back({rays.size(), closest});
+    }
+
+    const Tracer& tracer_;
+    mutable std::vector<Ray> rays_;
+    mutable std::vector<Batch> batches_;
+};
+
+struct Options {
+    std::string scene;
+    std::uint32_t texels = 2000, samples = 64;
+    int repeats = 5;
+};
+
+void run_replay(const Options& options) {
+    Context context(1);
+    LoadedScene loaded = need(load_scene(options.scene, context));
+    Scene& scene = loaded.scene;
+    if (scene.lights.empty() && scene.sky.is_black()) {
+        BakeOptions light;  // the light that the benchmarks use where a scene has none
+        light.sky.color = Vec3{0.7f, 0.9f, 1.3f};
+        light.sun.direction = Vec3{0.4188f, -0.7614f, -0.4949f};
+        light.sun.color = {14.0f, 12.5f, 10.0f};
+        light.sun.illuminance = 1.0;
+        need(apply_lighting(scene, light));
+    }
+    const WorldGeometry geometry = need(flatten(scene, context));
+    const SurfaceReader surfaces(scene, geometry);
+    const LightSet lights(scene, geometry, surfaces);
+    ChartOptions chart_options;
+    const ChartSet charts = need(make_charts(scene, geometry, chart_options, context));
+    const Atlas atlas = need(make_atlas(scene, geometry, charts, chart_options, context));
+    const auto by_page = triangles_by_page(scene, geometry, charts, atlas);
+    const TexelBuffer texels = need(rasterize_page(scene, geometry, charts, atlas, 0, by_page.at(0), context));
+    const auto tracer = need(make_embree_tracer(geometry, surfaces, context));
+    const std::size_t count = std::min<std::size_t>(options.texels, texels.size());
+    const std::size_t first = (texels.size() - count) / 2;
+    PathOptions path;
+    path.samples = options.samples;
+    path.ao_distance = 0.1f * length(geometry.bounds_max - geometry.bounds_min);
+
+    const auto gather = [&](const Tracer& with) {
+        const PathIntegrator integrator({scene, geometry, surfaces, lights, with}, path);
+        const auto workspace = integrator.make_workspace();
+        RadianceSums sums;
+        sums.resize(count);
+        std::array<SamplePoint, kSamplesPerTexel> points;
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::size_t texel = first + i;
+            const std::uint32_t n = sample_points(texels, texel, scene, geometry, charts, atlas, points);
+            const std::uint64_t id = std::uint64_t{texels.y[texel]} << 16 | texels.x[texel];
+            integrator.gather_texel(std::span(points).first(n), id, *workspace, sums, i, context);
+        }
+    };
+    const RecordingTracer recorder(*tracer);
+    gather(recorder);
+    double bake = 1e30, replay = 1e30;
+    for (int i = 0; i < options.repeats; ++i) {  // by turns: the machine's other work hits both alike
+        const CpuStopwatch bake_time;
+        gather(*tracer);
+        bake = std::min(bake, bake_time.seconds());
+        const CpuStopwatch replay_time;
+        recorder.replay();
+        replay = std::min(replay, replay_time.seconds());
+    }
+    const double rays = static_cast<double>(recorder.ray_count());
+    std::printf(
+        "scene,texels,samples,rays,rays_per_batch,bake_mrays_per_cpu_second,replay_mrays_per_cpu_second,share\n");
+    std::printf("%s,%zu,%u,%zu,%.1f,%.3f,%.3f,%.3f\n", base_name(options.scene).c_str(), count, options.samples,
+                recorder.ray_count(), rays / static_cast<double>(recorder.batch_count()), 1e-6 * rays / bake,
+                1e-6 * rays / replay, replay / bake);
+}
+
+}  // namespace
+
+void add_replay(CLI::App& app) {
+    auto options = std::make_shared<Options>();
+    CLI::App* command = app.add_subcommand("replay", "The bake's rays per second against a replay of the same rays");
+    command->add_option("scene", options->scene, ".glb or .gltf")->required()->check(CLI::ExistingFile);
+    command->add_option("--texels", options->texels, "From the middle of page 0")->check(CLI::Range(1u, 1u << 20));
+    command->add_option("--samples", options->samples, "Per texel")->check(CLI::Range(1u, 1u << 16));
+    command->add_option("--repeats", options->repeats, "The best of so many is printed")->check(CLI::Range(1, 100));
+    command->callback([options] { run_replay(*options); });
+}
+
+}  // namespace lumel::bench
