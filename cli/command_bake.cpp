@@ -107,7 +107,7 @@ Status run(const Options& options) {
     RunContext run_context(bake_options.threads, options.progress);
     Context& context = run_context.get();
     LUMEL_TRY(const LoadedScene loaded, load_lit_scene(options.scene, bake_options, context));
-    LUMEL_TRY(BakeWriter writer, BakeWriter::create(options.output, loaded, bake_options));
+    LUMEL_TRY(BakeWriter writer, BakeWriter::create(options.output, loaded, bake_options, context));
     BakeSink sink;
     sink.layout = [&](const WorldGeometry& geometry, const ChartSet& charts, const Atlas& atlas) {
         return writer.layout(geometry, charts, atlas);

@@ -1,10 +1,10 @@
 // Sky and sun of the options, and the artist's global controls, applied to a scene before anything is traced.
-#include <cmath>
 
 #include "base/try.h"
 #include "light/light_set.h"
 #include "lumel/bake.h"
 #include "math/constants.h"
+#include "math/trig.h"
 
 namespace lumel {
 namespace {
@@ -46,7 +46,7 @@ Status apply_lighting(Scene& scene, const BakeOptions& options) {
         LUMEL_TRY(ExtractedSun extracted, extract_sun(*scene.sky.map));
         scene.sky.map = std::move(extracted.sky);
         // The map's frame turned into the world's.
-        const float c = std::cos(scene.sky.rotation), s = std::sin(scene.sky.rotation);
+        const auto [s, c] = sincos_turn(scene.sky.rotation * kInvTwoPi);
         const Vec3 d = extracted.sun.direction;
         extracted.sun.direction = {c * d.x + s * d.z, d.y, c * d.z - s * d.x};
         scene.lights.push_back(extracted.sun);

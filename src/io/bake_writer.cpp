@@ -73,6 +73,7 @@ struct BakeWriter::Impl {
     OutputFolder output;
     const LoadedScene& loaded;
     BakeOptions options;
+    const Context& context;
     ChartSet charts;
     Atlas atlas;
     std::string geometry_hash;
@@ -110,9 +111,10 @@ BakeWriter::BakeWriter(BakeWriter&&) noexcept = default;
 BakeWriter& BakeWriter::operator=(BakeWriter&&) noexcept = default;
 
 Result<BakeWriter> BakeWriter::create(const std::filesystem::path& output, const LoadedScene& loaded,
-                                      const BakeOptions& options) {
+                                      const BakeOptions& options, const Context& context) {
     LUMEL_TRY(OutputFolder folder, OutputFolder::create(output));
-    return BakeWriter(std::unique_ptr<Impl>(new Impl{std::move(folder), loaded, options, {}, {}, {}, {}, {}, {}}));
+    return BakeWriter(
+        std::unique_ptr<Impl>(new Impl{std::move(folder), loaded, options, context, {}, {}, {}, {}, {}, {}}));
 }
 
 const std::filesystem::path& BakeWriter::folder() const { return impl_->output.path(); }
@@ -127,7 +129,7 @@ Status BakeWriter::layout(const WorldGeometry& geometry, const ChartSet& charts,
 Status BakeWriter::page(const Lightmap& lightmap) {
     LUMEL_CHECK(lightmap.page == impl_->pages.size(), lightmap.page, impl_->pages.size());
     const LayerWeights weights = layer_weights(impl_->options.include);
-    LUMEL_TRY(ManifestPage page, write_page_files(folder(), lightmap, weights));
+    LUMEL_TRY(ManifestPage page, write_page_files(folder(), lightmap, weights, impl_->context));
     impl_->textures.push_back(lit_texture(lightmap, weights));
     page.display_strength = impl_->textures.back().strength;
     impl_->previews.push_back(preview_of(lightmap, weights, kPreviewEdge));

@@ -16,9 +16,9 @@ namespace lumel {
 class BakeWriter {
 public:
     // Makes the partial folder beside `output` (see output_folder.h): errors of permission show here. Borrows `loaded`
-    // for its lifetime.
+    // and `context` (which may cancel the writing) for its lifetime.
     static Result<BakeWriter> create(const std::filesystem::path& output, const LoadedScene& loaded,
-                                     const BakeOptions& options);
+                                     const BakeOptions& options, const Context& context);
     ~BakeWriter();  // without finish() nothing is left behind
     BakeWriter(BakeWriter&&) noexcept;
     BakeWriter& operator=(BakeWriter&&) noexcept;

@@ -82,10 +82,15 @@ float plane_value(const std::filesystem::path& path, const std::string& name, st
 
 constexpr LayerWeights kAll{1, 1, 1};
 
+Result<ManifestPage> write(const TemporaryFolder& folder, const Lightmap& map, const LayerWeights& weights) {
+    const Context context(1);
+    return write_page_files(folder.path(), map, weights, context);
+}
+
 TEST(PageFiles, HoldWhatTheirUnitsSay) {
     const TemporaryFolder folder;
     const Lightmap map = made_up_page(0, 8, 8);
-    const auto page = write_page_files(folder.path(), map, kAll);
+    const auto page = write(folder, map, kAll);
     ASSERT_TRUE(page.ok()) << page.error().text();
     // Pixel 4 is texel 3: I = (0.01 + 0.1 + 1) * 4 * (1, 2, 3).
     const double green = 1.11 * 4 * 2;
@@ -104,7 +109,7 @@ TEST(PageFiles, LayersThatAreNotIncludedAreNotInTheSum) {
     const TemporaryFolder folder;
     Include include;
     include.direct = false;
-    ASSERT_TRUE(write_page_files(folder.path(), made_up_page(0, 8, 8), layer_weights(include)).ok());
+    ASSERT_TRUE(write(folder, made_up_page(0, 8, 8), layer_weights(include)).ok());
     EXPECT_NEAR(plane_value(folder / "lightmap_0.exr", "R", 0), 1.1, 1e-5);
     // The master keeps all.
     EXPECT_NEAR(plane_value(folder / "master_0.exr", "direct.I.R", 0), 0.01, 1e-7);
@@ -113,7 +118,7 @@ TEST(PageFiles, LayersThatAreNotIncludedAreNotInTheSum) {
 TEST(PageFiles, TheMasterHoldsEveryMoment) {
     const TemporaryFolder folder;
     const Lightmap map = made_up_page(0, 8, 8);
-    ASSERT_TRUE(write_page_files(folder.path(), map, kAll).ok());
+    ASSERT_TRUE(write(folder, map, kAll).ok());
     const auto all = read_exr_channels(folder / "master_0.exr", {});
     ASSERT_TRUE(all.ok()) << all.error().text();
     std::set<std::string> expected{"coverage", "count", "variance.R", "variance.G", "variance.B"};
@@ -134,7 +139,7 @@ TEST(PageFiles, TheMasterHoldsEveryMoment) {
 
 TEST(PageFiles, L1IsThatOfTheSum) {
     const TemporaryFolder folder;
-    ASSERT_TRUE(write_page_files(folder.path(), made_up_page(0, 8, 8), kAll).ok());
+    ASSERT_TRUE(write(folder, made_up_page(0, 8, 8), kAll).ok());
     RadianceSh<Vec3, 4> sh;
     sh.c[0] = Vec3{1, 2, 3} * (1.11f * 4 * 3.0f);
     sh.c[2] = Vec3{1, 2, 3} * (1.11f * 4 * 0.7f);
@@ -155,7 +160,7 @@ TEST(PageFiles, NumbersThatHalfCannotHoldAreWrittenAsFloat) {
                 layer.irradiance *= scale;
                 for (Vec3& coefficient : layer.sh) coefficient *= scale;
             }
-        const auto page = write_page_files(folder.path(), map, kAll);
+        const auto page = write(folder, map, kAll);
         ASSERT_TRUE(page.ok());
         const double expected = 1.11 * 43 * 3 * double(scale) * double(kPi);
         const std::size_t last = 8 * 8 - 1;
@@ -167,6 +172,16 @@ TEST(PageFiles, NumbersThatHalfCannotHoldAreWrittenAsFloat) {
             }
         }
     }
+}
+
+TEST(PageFiles, ACancelledBakeStopsBetweenRows) {
+    const TemporaryFolder folder;
+    Context context(1);
+    context.request_cancel();
+    const auto page = write_page_files(folder.path(), made_up_page(0, 8, 8), kAll, context);
+    ASSERT_FALSE(page.ok());
+    EXPECT_EQ(page.error().code, ErrorCode::cancelled);
+    EXPECT_EQ(folder.entries(), 0u);
 }
 
 TEST(LitTexture, IsAlbedoTimesIrradianceOverItsStrength) {
@@ -225,7 +240,7 @@ struct Baked {
         geometry = flatten(loaded.scene(), loaded.context).value();
         charts = make_charts(loaded.scene(), geometry, chart_options, loaded.context).value();
         atlas = make_atlas(loaded.scene(), geometry, charts, chart_options, loaded.context).value();
-        auto created = BakeWriter::create(output, *loaded.result, options);
+        auto created = BakeWriter::create(output, *loaded.result, options, loaded.context);
         EXPECT_TRUE(created.ok());
         writer.emplace(std::move(created).value());
         EXPECT_TRUE(writer->layout(geometry, charts, atlas).ok());

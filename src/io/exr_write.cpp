@@ -79,7 +79,8 @@ void insert_slice(exr::FrameBuffer& frame, const ExrChannelSource& channel, RowB
 
 Status write_exr(const std::filesystem::path& path, std::uint32_t width, std::uint32_t height,
                  std::span<const ExrChannelSource> channels,
-                 const std::function<void(std::uint32_t y, std::size_t channel, std::span<float> out)>& row) {
+                 const std::function<void(std::uint32_t y, std::size_t channel, std::span<float> out)>& row,
+                 const Context* context) {
     LUMEL_CHECK(width > 0 && height > 0 && !channels.empty(), width, height, channels.size());
     AtomicFile file(path);
     if (!file.ok()) return file.commit();
@@ -95,6 +96,8 @@ Status write_exr(const std::filesystem::path& path, std::uint32_t width, std::ui
         exr::OutputFile output(stream, make_header(width, height, channels));
         output.setFrameBuffer(frame);
         for (std::uint32_t y = 0; y < height; ++y) {
+            if (context && context->cancelled())
+                return Error{ErrorCode::cancelled, "cancelled while writing", path.string(), {}};
             for (std::size_t c = 0; c < channels.size(); ++c) {
                 row(y, c, rows[c].floats);
                 rows[c].convert();

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "image/image.h"
+#include "lumel/context.h"
 #include "lumel/result.h"
 #include "lumel/scene.h"
 
@@ -45,9 +46,11 @@ struct ExrChannelSource {
     std::string name;
     ExrType type = ExrType::full;
 };
+// With a context it stops between rows where that is cancelled, with that error.
 Status write_exr(const std::filesystem::path& path, std::uint32_t width, std::uint32_t height,
                  std::span<const ExrChannelSource> channels,
-                 const std::function<void(std::uint32_t y, std::size_t channel, std::span<float> out)>& row);
+                 const std::function<void(std::uint32_t y, std::size_t channel, std::span<float> out)>& row,
+                 const Context* context = nullptr);
 Status write_exr(const std::filesystem::path& path, const Image& rgb, ExrType type);
 
 Status write_png(const std::filesystem::path& path, std::uint32_t width, std::uint32_t height, std::uint32_t channels,

@@ -30,12 +30,14 @@ Channel channel(std::string name, ExrType type, Value value) {
             }};
 }
 
-Status write_channels(const std::filesystem::path& path, const Lightmap& map, const std::vector<Channel>& channels) {
+Status write_channels(const std::filesystem::path& path, const Lightmap& map, const std::vector<Channel>& channels,
+                      const Context& context) {
     std::vector<ExrChannelSource> sources;
     for (const Channel& c : channels) sources.push_back(c.source);
-    return write_exr(path, map.width, map.height, sources, [&](std::uint32_t y, std::size_t c, std::span<float> out) {
+    const auto row = [&](std::uint32_t y, std::size_t c, std::span<float> out) {
         channels[c].fill(std::span(map.texel_at).subspan(std::size_t{y} * map.width, map.width), out);
-    });
+    };
+    return write_exr(path, map.width, map.height, sources, row, &context);
 }
 
 const char* type_name(ExrType type) { return type == ExrType::half ? "half" : "float"; }
@@ -65,8 +67,9 @@ private:
 
 class PageWriter {
 public:
-    PageWriter(const std::filesystem::path& folder, const Lightmap& map, const LayerWeights& weights)
-        : folder_(folder), map_(map), weights_(weights) {}
+    PageWriter(const std::filesystem::path& folder, const Lightmap& map, const LayerWeights& weights,
+               const Context& context)
+        : folder_(folder), map_(map), weights_(weights), context_(context) {}
 
     Result<ManifestPage> write() {
         out_.width = map_.width;
@@ -100,7 +103,7 @@ private:
 
     Status write_file(PageFile kind, std::string type, const std::vector<Channel>& channels) {
         out_.files.push_back({kind, std::move(type)});
-        return write_channels(file(kind), map_, channels);
+        return write_channels(file(kind), map_, channels, context_);
     }
 
     Status write_irradiance_in(PageFile kind, LightUnit unit, ExrType type) {
@@ -122,21 +125,33 @@ private:
 
     // L0.R .. L0.B, and per channel the normalised linear band as a world-space vector: L1n.R.X ..
     Status write_l1() {
-        std::vector<L1Texel> texels(map_.texels.size());
         HalfCheck check;
-        for (std::size_t t = 0; t < texels.size(); ++t) {
-            texels[t] = l1(t);
-            for (std::size_t c = 0; c < 3; ++c) check.add(texels[t].l0[c]);
-        }
-        std::vector<Channel> channels;
-        for (std::size_t c = 0; c < 3; ++c) {
-            channels.push_back(channel(std::string("L0.") + kRgb[c], check.type(),
-                                       [&texels, c](std::size_t t) { return texels[t].l0[c]; }));
+        for (std::size_t t = 0; t < map_.texels.size(); ++t)
+            for (std::size_t c = 0; c < 3; ++c) check.add(l1(t).l0[c]);
+        std::vector<ExrChannelSource> sources;
+        for (std::size_t c = 0; c < 3; ++c) sources.push_back({std::string("L0.") + kRgb[c], check.type()});
+        for (std::size_t c = 0; c < 3; ++c)
             for (std::size_t k = 0; k < 3; ++k)
-                channels.push_back(channel(std::string("L1n.") + kRgb[c] + "." + kXyz[k], ExrType::half,
-                                           [&texels, c, k](std::size_t t) { return texels[t].l1n[c][k]; }));
+                sources.push_back({std::string("L1n.") + kRgb[c] + "." + kXyz[k], ExrType::half});
+        out_.files.push_back({PageFile::l1, check.type() == ExrType::half ? "half" : "half+float"});
+        std::vector<L1Texel> texels(map_.width);  // of one row: its channels are asked for one after another
+        const auto row = [&](std::uint32_t y, std::size_t channel, std::span<float> out) {
+            if (channel == 0) encode_l1_row(y, texels);
+            for (std::size_t x = 0; x < out.size(); ++x) out[x] = l1_number(texels[x], channel);
+        };
+        return write_exr(file(PageFile::l1), map_.width, map_.height, sources, row, &context_);
+    }
+
+    void encode_l1_row(std::uint32_t y, std::vector<L1Texel>& out) const {
+        for (std::uint32_t x = 0; x < map_.width; ++x) {
+            const std::uint32_t t = map_.texel_at[std::size_t{y} * map_.width + x];
+            out[x] = t == kNone ? L1Texel{} : l1(t);
         }
-        return write_file(PageFile::l1, check.type() == ExrType::half ? "half" : "half+float", channels);
+    }
+
+    // In the order of the file's channels.
+    static float l1_number(const L1Texel& texel, std::size_t channel) {
+        return channel < 3 ? texel.l0[channel] : texel.l1n[channel / 3 - 1][channel % 3];
     }
 
     [[nodiscard]] ExrType sh_type() const {
@@ -203,6 +218,7 @@ private:
     const std::filesystem::path& folder_;
     const Lightmap& map_;
     const LayerWeights& weights_;
+    const Context& context_;
     ManifestPage out_;
 };
 
@@ -224,8 +240,8 @@ float display_strength(const std::vector<Vec3>& reflected, float brightest) {
 }  // namespace
 
 Result<ManifestPage> write_page_files(const std::filesystem::path& folder, const Lightmap& map,
-                                      const LayerWeights& weights) {
-    return PageWriter(folder, map, weights).write();
+                                      const LayerWeights& weights, const Context& context) {
+    return PageWriter(folder, map, weights, context).write();
 }
 
 LitTexture lit_texture(const Lightmap& map, const LayerWeights& weights) {

@@ -22,7 +22,7 @@ struct PagePreview {
 // Writes lightmap, irradiance, l1, master, ao, bent_normal and sky_visibility of the page; returns what the manifest
 // says of them.
 Result<ManifestPage> write_page_files(const std::filesystem::path& folder, const Lightmap& map,
-                                      const LayerWeights& weights);
+                                      const LayerWeights& weights, const Context& context);
 
 // albedo x I + emission as 8-bit sRGB over its strength. Strength is at most twice the brightest reflected light of the
 // page; lamps brighter than that are cut to it, channel by channel, as a screen would.
