@@ -6,7 +6,11 @@
 #include "texel/ray_offset.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 
 #include "math/constants.h"
 
@@ -15,34 +19,50 @@ namespace {
 
 Vec3 abs(Vec3 v) { return {std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)}; }
 
+// The next float above x, or below it; x finite.
+float next_float(float x, bool above) {
+    if (x == 0.0f) return above ? std::numeric_limits<float>::denorm_min() : -std::numeric_limits<float>::denorm_min();
+    const auto bits = std::bit_cast<std::int32_t>(x);
+    return std::bit_cast<float>((x > 0.0f) == above ? bits + 1 : bits - 1);
+}
+
 // fl(x + step), then one float further: not nearer than the exact sum.
 float add_away(float x, float step) {
     const float sum = x + step;
-    if (step == 0.0f) return sum;
-    return std::nextafterf(sum, step > 0.0f ? HUGE_VALF : -HUGE_VALF);
+    return step == 0.0f ? sum : next_float(sum, step > 0.0f);
+}
+
+using Corners = std::array<Vec3, 3>;
+
+float plane_error(const Corners& p, float b1, float b2, Vec3 normal) {
+    const Vec3 magnitude =
+        abs(p[0]) * std::fabs(1.0f - b1 - b2) + abs(p[1]) * std::fabs(b1) + abs(p[2]) * std::fabs(b2);
+    return gamma_bound(7) * dot(abs(normal), magnitude);
+}
+
+float tracer_error(const Corners& p) {
+    const Vec3 extent = max(max(p[0], p[1]), p[2]) - min(min(p[0], p[1]), p[2]);
+    const float longest = max_component(extent);
+    constexpr float kThinnest = 0x1p-11f;  // area per squared length
+    const float area = std::max(0.5f * length(cross(p[1] - p[0], p[2] - p[0])), kThinnest * longest * longest);
+    if (!(area > 0.0f)) return 0.0f;
+    return kFloatEpsilon * longest + 3.0f * gamma_bound(8) * (extent.x * extent.y) * (extent.z / area);
 }
 
 }  // namespace
 
 float plane_error(const WorldGeometry& geometry, std::uint32_t triangle, float b1, float b2, Vec3 normal) {
-    const auto [p0, p1, p2] = geometry.corners(triangle);
-    const Vec3 magnitude = abs(p0) * std::fabs(1.0f - b1 - b2) + abs(p1) * std::fabs(b1) + abs(p2) * std::fabs(b2);
-    return gamma_bound(7) * dot(abs(normal), magnitude);
+    return plane_error(geometry.corners(triangle), b1, b2, normal);
 }
 
 float tracer_error(const WorldGeometry& geometry, std::uint32_t triangle) {
-    const auto [p0, p1, p2] = geometry.corners(triangle);
-    const Vec3 extent = max(max(p0, p1), p2) - min(min(p0, p1), p2);
-    const float longest = max_component(extent);
-    constexpr float kThinnest = 0x1p-11f;  // area per squared length
-    const float area = std::max(0.5f * length(cross(p1 - p0, p2 - p0)), kThinnest * longest * longest);
-    if (!(area > 0.0f)) return 0.0f;
-    return kFloatEpsilon * longest + 3.0f * gamma_bound(8) * (extent.x * extent.y) * (extent.z / area);
+    return tracer_error(geometry.corners(triangle));
 }
 
 Vec3 offset_origin(const WorldGeometry& geometry, std::uint32_t triangle, float b1, float b2, Vec3 side_normal) {
     const Vec3 p = geometry.position(triangle, b1, b2);
-    const float d = plane_error(geometry, triangle, b1, b2, side_normal) + tracer_error(geometry, triangle);
+    const Corners corners = geometry.corners(triangle);
+    const float d = plane_error(corners, b1, b2, side_normal) + tracer_error(corners);
     return {add_away(p.x, d * side_normal.x), add_away(p.y, d * side_normal.y), add_away(p.z, d * side_normal.z)};
 }
 
