@@ -15,6 +15,7 @@
 #include <cstring>
 #include <functional>
 #include <limits>
+#include <new>
 #include <string>
 #include <thread>
 #include <utility>
@@ -247,12 +248,16 @@ std::string describe(RTCDevice device, const char* isa) {
     return "Embree " + version + ", isa " + (*isa ? isa : "default");
 }
 
-Error embree_error(RTCDevice device, const std::string& doing) {
-    const RTCError code = rtcGetDeviceError(device);
+constexpr const char* kMemoryRemedy = "use a machine with more memory or a smaller scene";
+
+Error embree_error(RTCError code, const std::string& doing) {
     const std::string message = "Embree failed " + doing + " (error " + std::to_string(static_cast<int>(code)) + ")";
     if (code == RTC_ERROR_UNSUPPORTED_CPU) return {ErrorCode::unsupported, message, {}, {}};
-    return {ErrorCode::out_of_memory, message, {}, "use a machine with more memory or a smaller scene"};
+    return {ErrorCode::out_of_memory, message, {}, kMemoryRemedy};
 }
+
+// Of the device; null: of the attempt to make one.
+Error last_error(RTCDevice device, const std::string& doing) { return embree_error(rtcGetDeviceError(device), doing); }
 
 // Embree reads 16 bytes at each 12-byte vertex, hence the room behind the last one.
 Buffer make_vertex_buffer(RTCDevice device, std::span<const Vec3> positions) {
@@ -303,14 +308,14 @@ void EmbreeTracer::split_by_alpha() {
 Status EmbreeTracer::add_part(Part& part, RTCBuffer vertices) {
     if (part.world_triangle.empty()) return success();
     Geometry geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
-    if (!geometry.get()) return embree_error(device_.get(), "making a geometry");
+    if (!geometry.get()) return last_error(device_.get(), "making a geometry");
     rtcSetGeometryBuildQuality(geometry.get(), RTC_BUILD_QUALITY_HIGH);
     rtcSetGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, vertices, 0, sizeof(Vec3),
                          geometry_.positions.size());
     auto* indices =
         static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                                             3 * sizeof(std::uint32_t), part.world_triangle.size()));
-    if (!indices) return embree_error(device_.get(), "allocating indices");
+    if (!indices) return last_error(device_.get(), "allocating indices");
     for (const std::uint32_t triangle : part.world_triangle)
         indices = std::ranges::copy(geometry_.triangles[triangle].vertices, indices).out;
     rtcSetGeometryUserData(geometry.get(), &part);
@@ -323,30 +328,27 @@ Status EmbreeTracer::add_part(Part& part, RTCBuffer vertices) {
     return success();
 }
 
-// Embree builds on one thread: the shape of its tree depends on how the threads share the work, and what a ray meets
-// among surfaces that lie within rounding of one another depends on the tree.
+// Embree builds on one thread, so that the shape of its tree cannot depend on how threads share the work: what a ray
+// meets among surfaces within rounding of one another may depend on the order in which the tree visits them.
 Status EmbreeTracer::build() {
     const char* isa = pinned_isa();
     const std::string config = "threads=1" + (*isa ? ",isa=" + std::string(isa) : std::string());
     device_ = Device(rtcNewDevice(config.c_str()));
-    if (!device_.get()) return embree_error(nullptr, "starting");
+    if (!device_.get()) return last_error(nullptr, "starting");
     description_ = describe(device_.get(), isa);
     scene_ = SceneHandle(rtcNewScene(device_.get()));
-    if (!scene_.get()) return embree_error(device_.get(), "making a scene");
+    if (!scene_.get()) return last_error(device_.get(), "making a scene");
     rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(scene_.get(), RTC_BUILD_QUALITY_HIGH);
 
     split_by_alpha();
     const Buffer vertices = make_vertex_buffer(device_.get(), geometry_.positions);
-    if (!vertices.get()) return embree_error(device_.get(), "allocating vertices");
+    if (!vertices.get()) return last_error(device_.get(), "allocating vertices");
     for (Part& part : parts_)
         if (Status status = add_part(part, vertices.get()); !status.ok()) return status;
     rtcCommitScene(scene_.get());
     if (const RTCError code = rtcGetDeviceError(device_.get()); code != RTC_ERROR_NONE)
-        return Error{ErrorCode::out_of_memory,
-                     "Embree failed building (error " + std::to_string(int{code}) + ")",
-                     {},
-                     "use a machine with more memory or a smaller scene"};
+        return embree_error(code, "building");
     return success();
 }
 
@@ -426,10 +428,15 @@ void EmbreeTracer::occluded(std::span<const Ray> rays, std::span<std::uint8_t> b
 
 }  // namespace
 
+// Embree reports its own want of memory; our index lists come on top.
 Result<std::unique_ptr<Tracer>> make_embree_tracer(const WorldGeometry& geometry, SurfaceReader surfaces, Context&) {
-    auto tracer = std::make_unique<EmbreeTracer>(geometry, surfaces);
-    if (Status status = tracer->build(); !status.ok()) return std::move(status).error();
-    return std::unique_ptr<Tracer>(std::move(tracer));
+    try {
+        auto tracer = std::make_unique<EmbreeTracer>(geometry, surfaces);
+        if (Status status = tracer->build(); !status.ok()) return std::move(status).error();
+        return std::unique_ptr<Tracer>(std::move(tracer));
+    } catch (const std::bad_alloc&) {
+        return Error{ErrorCode::out_of_memory, "no memory for the ray tracer's triangles", {}, kMemoryRemedy};
+    }
 }
 
 }  // namespace lumel

@@ -3,9 +3,15 @@
 #include "trace/tracer.h"
 
 #include <gtest/gtest.h>
+#if defined(__linux__)
+#include <sys/resource.h>
+#include <unistd.h>
+#endif
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <fstream>
 #include <limits>
 #include <numeric>
 #include <thread>
@@ -350,6 +356,32 @@ TEST(Tracer, StatisticsSumOverThreads) {
     EXPECT_EQ(tracer->statistics().invalid, 0u);
     EXPECT_GT(tracer->statistics().seconds, 0.0);
 }
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define LUMEL_TEST_SANITIZED 1
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define LUMEL_TEST_SANITIZED 1
+#endif
+#endif
+#if defined(__linux__) && !defined(LUMEL_TEST_SANITIZED)
+// A process that may take 16 MB more: an error, no crash. (Sanitizers reserve more address space than that.)
+TEST(TracerDeathTest, WantOfMemoryIsAnError) {
+    const World world = mixed_world();
+    const auto attempt = [&] {
+        std::ifstream statistics("/proc/self/statm");
+        rlim_t pages = 0;
+        statistics >> pages;
+        const rlim_t bytes = pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE)) + (16u << 20);
+        const rlimit limit{bytes, bytes};
+        if (setrlimit(RLIMIT_AS, &limit) != 0) std::_Exit(2);
+        Context context(1);
+        const auto tracer = make_embree_tracer(world.geometry, world.surfaces(), context);
+        std::_Exit(!tracer.ok() && tracer.error().code == ErrorCode::out_of_memory ? 0 : 1);
+    };
+    EXPECT_EXIT(attempt(), ::testing::ExitedWithCode(0), "");
+}
+#endif
 
 TEST(Tracer, DescriptionNamesTheBackEnd) {
     const World world = stacked_quads({0.0f});
