@@ -1,3 +1,4 @@
+// Base64, percent escapes and what a relative URI may name.
 #include "io/data_uri.h"
 
 #include <array>

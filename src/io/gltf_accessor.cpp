@@ -1,3 +1,4 @@
+// Accessors: shape, bounds, sparse values, numbers. glTF 2.0, sections 3.6.2 and 3.11.
 #include "io/gltf_accessor.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Accessors against values written by hand.
 #include "io/gltf_accessor.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// The .glb chunks, required extensions, buffers and buffer views. glTF 2.0, sections 3.6.1 and 4.
 #include "io/gltf_container.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Containers, URIs and JSON, whole and damaged.
 #include "io/gltf_container.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Lights and cameras where their nodes put them; the scale of a node does not count.
 #include "io/gltf_lights.h"
 
 #include <cmath>

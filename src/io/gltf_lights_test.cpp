@@ -1,3 +1,4 @@
+// Lights and cameras from glTF made in code.
 #include "io/gltf_lights.h"
 
 #include <gtest/gtest.h>

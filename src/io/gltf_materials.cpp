@@ -1,3 +1,4 @@
+// Factors, alpha modes and emission of glTF materials; what a diffuse bake leaves out is noted.
 #include "io/gltf_materials.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Materials and textures from glTF made in code.
 #include "io/gltf_materials.h"
 
 #include <gtest/gtest.h>

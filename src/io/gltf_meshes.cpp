@@ -1,3 +1,4 @@
+// Primitives to one Mesh: vertices gathered from accessors, normals finished, sources remembered.
 #include "io/gltf_meshes.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Meshes from glTF made in code.
 #include "io/gltf_meshes.h"
 
 #include <gtest/gtest.h>

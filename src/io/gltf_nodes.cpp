@@ -1,3 +1,4 @@
+// The node tree, walked without recursion: parents, scene, animation, transforms.
 #include "io/gltf_nodes.h"
 
 #include <algorithm>

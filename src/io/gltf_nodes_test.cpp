@@ -1,3 +1,4 @@
+// Node trees, instancing and classes from glTF made in code.
 #include "io/gltf_nodes.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Images, samplers and KHR_texture_transform of texture references.
 #include "io/gltf_textures.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// Lists, strips and fans. glTF 2.0, section 3.7.2.1.
 #include "io/gltf_topology.h"
 
 #include <string>

@@ -1,3 +1,4 @@
+// Counts a scene once, then writes it as text or as JSON.
 #include "io/info.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Based on: ITU-T T.81, annex B (markers and table segments).
 #include "io/jpeg_fence.h"
 
 #include <cstdint>

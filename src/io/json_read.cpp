@@ -1,3 +1,4 @@
+// The guarded JSON parser and typed access to members.
 #include "io/json_read.h"
 
 #include <cmath>

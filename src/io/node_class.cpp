@@ -1,3 +1,4 @@
+// The rule of docs/sidecar.md, first match wins.
 #include "io/node_class.h"
 
 namespace lumel {

@@ -1,3 +1,4 @@
+// Images written by hand, by our writer and by other programs; damage to each kind.
 #include <gtest/gtest.h>
 
 #include <cstring>

@@ -1,3 +1,4 @@
+// The sidecar meets the scene: names are found, area lights placed, settings inherited.
 #include <algorithm>
 #include <cmath>
 

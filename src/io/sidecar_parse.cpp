@@ -1,3 +1,4 @@
+// The sidecar as text: keys, types and ranges (docs/sidecar.md).
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>

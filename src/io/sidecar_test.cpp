@@ -1,3 +1,4 @@
+// The sidecar: what it sets, and that every fault names its key.
 #include "io/sidecar.h"
 
 #include <gtest/gtest.h>

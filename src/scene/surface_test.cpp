@@ -1,3 +1,4 @@
+// Texture filtering and materials against values worked out by hand.
 #include "scene/surface.h"
 
 #include <gtest/gtest.h>

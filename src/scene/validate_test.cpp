@@ -1,3 +1,4 @@
+// One fault at a time in a sound scene: each is found and named.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// Flattening, its queries and the hash of a scene.
 #include "scene/world_geometry.h"
 
 #include <gtest/gtest.h>
