@@ -88,12 +88,11 @@ private:
     // With one parent each, what cannot be reached from a root lies on a cycle or below one.
     Result<std::vector<std::uint32_t>> parents_first() const {
         std::vector<std::uint32_t> order;
+        order.reserve(count_);
         for (std::uint32_t i = 0; i < count_; ++i)
             if (parents_[i] == kNone) order.push_back(i);
-        for (std::size_t next = 0; next < order.size(); ++next) {
-            const auto& children = children_[order[next]];
-            order.insert(order.end(), children.begin(), children.end());
-        }
+        for (std::size_t next = 0; next < order.size(); ++next)
+            for (const std::uint32_t child : children_[order[next]]) order.push_back(child);
         if (order.size() == count_) return order;
         std::vector<bool> reached(count_);
         for (const std::uint32_t index : order) reached[index] = true;
