@@ -15,7 +15,8 @@ double cross2(Eigen::Vector2d a, Eigen::Vector2d b) { return a.x() * b.y() - a.y
 // Collects the quadratic form over the unknowns, pinned ones moved to the right-hand side.
 class Assembly {
 public:
-    Assembly(std::size_t vertices, std::uint32_t pin_a, Eigen::Vector2d uv_a, std::uint32_t pin_b, Eigen::Vector2d uv_b)
+    Assembly(std::size_t vertices, std::uint32_t pin_a, const Eigen::Vector2d& uv_a, std::uint32_t pin_b,
+             const Eigen::Vector2d& uv_b)
         : unknown_(2 * vertices, -1), fixed_(2 * vertices, 0.0) {
         fixed_[2 * pin_a] = uv_a.x(), fixed_[2 * pin_a + 1] = uv_a.y();
         fixed_[2 * pin_b] = uv_b.x(), fixed_[2 * pin_b + 1] = uv_b.y();
@@ -63,7 +64,7 @@ void add_triangle(Assembly& assembly, const Patch& patch, std::size_t t) {
     for (int k = 0; k < 3; ++k) {
         const std::size_t i = v[k], j = v[(k + 1) % 3];
         // Dirichlet energy: half the cotangent of the angle opposite to edge (i, j).
-        const Eigen::Vector2d o = p[(k + 2) % 3];
+        const Eigen::Vector2d& o = p[(k + 2) % 3];
         const double w = 0.5 * (p[k] - o).dot(p[(k + 1) % 3] - o) / twice_area;
         for (std::size_t c = 0; c < 2; ++c) {
             assembly.add(2 * i + c, 2 * i + c, w), assembly.add(2 * j + c, 2 * j + c, w);
@@ -88,8 +89,8 @@ std::array<Eigen::Vector2d, 3> lay_flat(const Patch& patch, std::size_t triangle
             Eigen::Vector2d{x, std::max(y, kThinnest * std::max(base, std::abs(x)))}};
 }
 
-std::optional<std::vector<Eigen::Vector2d>> lscm(const Patch& patch, std::uint32_t pin_a, Eigen::Vector2d uv_a,
-                                                 std::uint32_t pin_b, Eigen::Vector2d uv_b) {
+std::optional<std::vector<Eigen::Vector2d>> lscm(const Patch& patch, std::uint32_t pin_a, const Eigen::Vector2d& uv_a,
+                                                 std::uint32_t pin_b, const Eigen::Vector2d& uv_b) {
     Assembly assembly(patch.positions.size(), pin_a, uv_a, pin_b, uv_b);
     for (std::size_t t = 0; t < patch.triangles.size(); ++t) add_triangle(assembly, patch, t);
     return assembly.solve();

@@ -20,8 +20,8 @@ struct Patch {
 
 // UVs of the patch's vertices, with vertices `pin_a` and `pin_b` at the UVs given. Nothing where the system cannot be
 // solved. Does not check flips or overlaps.
-std::optional<std::vector<Eigen::Vector2d>> lscm(const Patch& patch, std::uint32_t pin_a, Eigen::Vector2d uv_a,
-                                                 std::uint32_t pin_b, Eigen::Vector2d uv_b);
+std::optional<std::vector<Eigen::Vector2d>> lscm(const Patch& patch, std::uint32_t pin_a, const Eigen::Vector2d& uv_a,
+                                                 std::uint32_t pin_b, const Eigen::Vector2d& uv_b);
 
 // A triangle laid into its own plane, first corner at 0, second on the x axis. Slivers are made a little less thin, so
 // that their cotangents stay within what doubles can take.

@@ -33,6 +33,7 @@ Channel channel(std::string name, ExrType type, Value value) {
 Status write_channels(const std::filesystem::path& path, const Lightmap& map, const std::vector<Channel>& channels,
                       const Context& context) {
     std::vector<ExrChannelSource> sources;
+    sources.reserve(channels.size());
     for (const Channel& c : channels) sources.push_back(c.source);
     const auto row = [&](std::uint32_t y, std::size_t c, std::span<float> out) {
         channels[c].fill(std::span(map.texel_at).subspan(std::size_t{y} * map.width, map.width), out);

@@ -58,6 +58,7 @@ void place(const SidecarAreaLight& area, Vec3 position, Vec3 direction, Vec3 up,
 
 std::vector<std::string> names_of(const std::vector<SceneNode>& nodes) {
     std::vector<std::string> names;
+    names.reserve(nodes.size());
     for (const SceneNode& node : nodes) names.push_back(node.name);
     return names;
 }
@@ -94,6 +95,7 @@ Status apply_lights(const Sidecar& sidecar, const std::vector<SceneNode>& nodes,
         }
         if (found) continue;
         std::vector<std::string> names;
+        names.reserve(lights.size());
         for (const ReadLight& read : lights) names.push_back(read.light.name);
         return invalid(sidecar.where, "there is no light '" + name + "'", known_names(names));
     }
