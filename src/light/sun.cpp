@@ -3,12 +3,11 @@
 #include <algorithm>
 
 #include "math/constants.h"
-#include "math/frame.h"
 #include "math/warp.h"
 
 namespace lumel {
 
-SunLight::SunLight(const Light& light) : towards_(-light.direction), irradiance_(light.intensity) {
+SunLight::SunLight(const Light& light) : frame_(-light.direction), irradiance_(light.intensity) {
     if (light.angular_diameter <= 0.0f) return;
     const double half = std::min(0.5 * static_cast<double>(light.angular_diameter), 1.5707963267948966);
     const double sine = sincos_radians(half).sine, half_sine = sincos_radians(0.5 * half).sine;
@@ -19,16 +18,16 @@ SunLight::SunLight(const Light& light) : towards_(-light.direction), irradiance_
 }
 
 LightSample SunLight::sample(Vec2 u) const {
-    if (one_minus_cos_ == 0.0f) return {towards_, kInfiniteDistance, irradiance_, 0.0f, kNone};
+    if (one_minus_cos_ == 0.0f) return {frame_.normal, kInfiniteDistance, irradiance_, 0.0f, kNone};
     const float pdf = UniformCone::pdf(one_minus_cos_);
-    const Vec3 direction = Frame(towards_).to_world(UniformCone::sample(u, one_minus_cos_));
+    const Vec3 direction = frame_.to_world(UniformCone::sample(u, one_minus_cos_));
     return {direction, kInfiniteDistance, radiance_ / pdf, pdf, kNone};
 }
 
 LightHit SunLight::intersect(Vec3 direction) const {
     // By the sine: the cosine of a small disc's edge has too few digits.
-    const Vec3 across = cross(direction, towards_);
-    const bool inside = dot(direction, towards_) > 0.0f && dot(across, across) <= sine_squared_;
+    const Vec3 across = cross(direction, frame_.normal);
+    const bool inside = dot(direction, frame_.normal) > 0.0f && dot(across, across) <= sine_squared_;
     if (one_minus_cos_ == 0.0f || !inside) return {};
     return {radiance_, UniformCone::pdf(one_minus_cos_), kInfiniteDistance};
 }

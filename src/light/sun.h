@@ -2,6 +2,7 @@
 #pragma once
 
 #include "light/light_sample.h"
+#include "math/frame.h"
 
 namespace lumel {
 
@@ -14,7 +15,7 @@ public:
     [[nodiscard]] bool has_size() const { return one_minus_cos_ > 0.0f; }
 
 private:
-    Vec3 towards_;  // unit, to the centre of the disc
+    Frame frame_;  // its normal: the unit direction to the centre of the disc
     Vec3 irradiance_;
     Vec3 radiance_{};             // of the disc
     float one_minus_cos_ = 0.0f;  // of its half angle; 0 = a point

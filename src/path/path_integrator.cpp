@@ -10,6 +10,7 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
+#include "base/prefetch.h"
 #include "base/try.h"
 #include "math/constants.h"
 #include "math/frame.h"
@@ -50,6 +51,7 @@ public:
         Vec3 reflectance;     // albedo / pi
         float direction_pdf;  // solid-angle density with which `direction` was drawn
         Vec3 direction;
+        std::uint32_t triangle;  // that it lies on; its own rays cannot hit it
     };
     // A light sample waiting for its shadow ray.
     struct Pending {
@@ -67,6 +69,7 @@ public:
     std::array<std::uint32_t, kWavefrontLanes> lanes;  // of the paths still alive
     std::array<Ray, kWavefrontLanes> rays;             // by position in `lanes`
     std::array<Hit, kWavefrontLanes> hits;
+    std::array<AlbedoLookup, kWavefrontLanes> albedo;  // at `hits`
 
     std::vector<Ray> shadow_rays;
     std::vector<Pending> pending;
@@ -97,6 +100,24 @@ PathIntegrator::WorkspacePtr PathIntegrator::make_workspace() const {
 }
 
 namespace {
+
+// What a batch of paths reads at its hits lies scattered over memory: asked for in the order in which one thing leads
+// to the next, for all hits, it arrives while the others are asked for.
+void begin_surfaces(std::span<const Hit> hits, const WorldGeometry& geometry, const SurfaceReader& surfaces,
+                    std::span<AlbedoLookup> albedo) {
+    for (const Hit& hit : hits)
+        if (!hit.missed()) prefetch(&geometry.triangles[hit.triangle]);
+    for (const Hit& hit : hits) {
+        if (hit.missed()) continue;
+        for (const std::uint32_t vertex : geometry.triangles[hit.triangle].vertices) {
+            prefetch(&geometry.positions[vertex]);
+            prefetch(&geometry.normals[vertex]);
+            prefetch(&geometry.uv0[vertex]);
+        }
+    }
+    for (std::size_t i = 0; i < hits.size(); ++i)
+        if (!hits[i].missed()) albedo[i] = surfaces.begin_albedo(hits[i].triangle, hits[i].b1, hits[i].b2);
+}
 
 // Light samples of one vertex, queued with their shadow rays. Shared by the first vertex (bounced = false, where every
 // sample is an event of its own with a direction) and the later ones (where only the sum matters).
@@ -153,7 +174,7 @@ private:
         ray.origin = vertex.position;
         ray.direction = sample.direction;
         ray.tmax = sample.distance < kInfiniteDistance ? sample.distance * kShadowShortening : kInfiniteDistance;
-        ray.skip = sample.triangle;
+        ray.skip = sample.triangle != kNone ? sample.triangle : vertex.triangle;
         ray.alpha_key = key;
         workspace_.shadow_rays.push_back(ray);
     }
@@ -181,6 +202,7 @@ void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w
         vertex.position = starts[lane].origin;
         vertex.normal = starts[lane].normal;
         vertex.face_normal = {};
+        vertex.triangle = starts[lane].triangle;
         vertex.direction = Frame(vertex.normal).to_world(local);
         vertex.direction_pdf = GatherHemisphere::pdf(local.z);
         w.first_direction[lane] = vertex.direction;
@@ -191,6 +213,7 @@ void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w
         ray = {};
         ray.origin = vertex.position;
         ray.direction = vertex.direction;
+        ray.skip = starts[lane].triangle;
         ray.alpha_key = sampler.hash(0x51ed270bu);
     }
     transport_.tracer.closest(std::span(w.rays).first(count), std::span(w.hits).first(count));
@@ -234,6 +257,9 @@ void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w
                 w.bounced[lane] += w.throughput[lane] * light.radiance * mis;
         };
 
+        if (bounce < options_.bounces)
+            begin_surfaces(std::span(w.hits).first(alive), geometry, transport_.surfaces, w.albedo);
+
         // What the rays met: light along the way, the sky, or a surface.
         std::size_t kept = 0;
         for (std::size_t i = 0; i < alive; ++i) {
@@ -266,7 +292,8 @@ void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w
             vertex.face_normal = geometry.geometric_normal(hit.triangle) * side;
             vertex.normal = geometry.shading_normal(hit.triangle, hit.b1, hit.b2) * side;
             vertex.position = offset_origin(geometry, hit.triangle, hit.b1, hit.b2, vertex.face_normal);
-            vertex.reflectance = transport_.surfaces.albedo(hit.triangle, hit.b1, hit.b2) * kInvPi;
+            vertex.triangle = hit.triangle;
+            vertex.reflectance = SurfaceReader::finish(w.albedo[i]) * kInvPi;
             if (is_black(vertex.reflectance)) continue;
             w.lanes[kept++] = lane;
         }
@@ -306,6 +333,7 @@ void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w
             ray = {};
             ray.origin = vertex.position;
             ray.direction = vertex.direction;
+            ray.skip = vertex.triangle;
             ray.alpha_key = sampler.hash(0x51ed270bu + first_pair);
             w.lanes[kept++] = lane;
         }
@@ -340,6 +368,7 @@ void PathIntegrator::surface_starts(std::span<const SamplePoint> points, std::sp
         w.rays[lifted].origin = out[i].origin;
         w.rays[lifted].direction = move / distance;
         w.rays[lifted].tmax = distance;
+        w.rays[lifted].skip = triangle;
         ++lifted;
     }
     if (lifted == 0) return;
@@ -351,7 +380,7 @@ void PathIntegrator::surface_starts(std::span<const SamplePoint> points, std::sp
 
 namespace {
 
-// Sums of one texel, in double: millions of samples must add up.
+// Sums of one texel: in single precision over one wavefront, and those in double, for millions of samples must add up.
 class TexelSink {
 public:
     explicit TexelSink(float ao_distance) : ao_distance_(ao_distance) {}
@@ -359,6 +388,7 @@ public:
     void begin(std::span<const PathStart> starts, float sh_scale) {
         starts_ = starts;
         sh_scale_ = sh_scale;
+        wavefront_ = {};
         for (std::size_t lane = 0; lane < starts.size(); ++lane) {
             sample_[lane] = {};
             void_[lane] = false;
@@ -368,14 +398,13 @@ public:
     void void_path(std::uint32_t lane) { void_[lane] = true; }
 
     void light(std::uint32_t lane, Layer layer, Vec3 direction, Vec3 value) {
-        LayerSums& sums = layers_[static_cast<std::size_t>(layer)];
+        LayerSums<float>& sums = wavefront_[static_cast<std::size_t>(layer)];
         const ShBasis basis = sh_basis(direction);
-        for (std::size_t i = 0; i < kShCoefficients; ++i)
-            for (std::size_t c = 0; c < 3; ++c)
-                sums.sh[i][c] += static_cast<double>(basis[i]) * static_cast<double>(value[c] * sh_scale_);
+        for (std::size_t c = 0; c < 3; ++c)
+            for (std::size_t i = 0; i < kShCoefficients; ++i) sums.sh[c][i] += basis[i] * value[c];
         const float cosine = std::max(0.0f, dot(direction, starts_[lane].normal));
         const Vec3 irradiance = value * (cosine * kInvPi);
-        for (std::size_t c = 0; c < 3; ++c) sums.irradiance[c] += static_cast<double>(irradiance[c]);
+        for (std::size_t c = 0; c < 3; ++c) sums.irradiance[c] += irradiance[c];
         sample_[lane] += irradiance;
     }
 
@@ -389,6 +418,12 @@ public:
     }
 
     void end() {
+        for (std::size_t layer = 0; layer < kLayerCount; ++layer)
+            for (std::size_t c = 0; c < 3; ++c) {
+                for (std::size_t i = 0; i < kShCoefficients; ++i)
+                    layers_[layer].sh[c][i] += static_cast<double>(wavefront_[layer].sh[c][i] * sh_scale_);
+                layers_[layer].irradiance[c] += static_cast<double>(wavefront_[layer].irradiance[c]);
+            }
         for (std::size_t lane = 0; lane < starts_.size(); ++lane) {
             ++traced_;
             if (void_[lane]) continue;
@@ -421,7 +456,7 @@ public:
             LayerMoments& moments = out.layers[index][layer];
             for (std::size_t c = 0; c < 3; ++c) {
                 for (std::size_t i = 0; i < kShCoefficients; ++i)
-                    moments.sh[i][c] = static_cast<float>(layers_[layer].sh[i][c] * inverse);
+                    moments.sh[i][c] = static_cast<float>(layers_[layer].sh[c][i] * inverse);
                 moments.irradiance[c] = static_cast<float>(layers_[layer].irradiance[c] * inverse);
             }
         }
@@ -434,9 +469,10 @@ public:
     }
 
 private:
+    template <class Number>
     struct LayerSums {
-        std::array<std::array<double, 3>, kShCoefficients> sh{};
-        std::array<double, 3> irradiance{};
+        std::array<std::array<Number, kShCoefficients>, 3> sh{};  // by channel: the nine add up as vectors
+        std::array<Number, 3> irradiance{};
     };
 
     [[nodiscard]] double variance_of_mean(double sum, double squares) const {
@@ -450,7 +486,8 @@ private:
     std::span<const PathStart> starts_;
     std::array<Vec3, kWavefrontLanes> sample_{};
     std::array<bool, kWavefrontLanes> void_{};
-    std::array<LayerSums, kLayerCount> layers_{};
+    std::array<LayerSums<float>, kLayerCount> wavefront_{};
+    std::array<LayerSums<double>, kLayerCount> layers_{};
     std::array<double, 3> sum_{}, squares_{}, bent_{};
     double luminance_sum_ = 0.0, luminance_squares_ = 0.0, sky_visibility_ = 0.0, open_ = 0.0;
     std::uint32_t count_ = 0, traced_ = 0;
@@ -510,7 +547,7 @@ void PathIntegrator::gather_texel(std::span<const SamplePoint> points, std::uint
             // Both sides take turns in pairs, so that each side meets every sample point.
             const bool back = both_sides && ((sample ^ (sample / kWavefrontLanes)) & 1u) != 0;
             const SurfaceStart& start = (back ? w.back_surfaces : w.surfaces)[sample % n];
-            w.starts[lane] = {start.origin, start.normal, key, sample};
+            w.starts[lane] = {start.origin, start.normal, key, sample, points[sample % n].triangle};
         }
         const auto starts = std::span<const PathStart>(w.starts).first(lanes);
         sink.begin(starts, both_sides ? 2.0f : 1.0f);

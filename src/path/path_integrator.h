@@ -43,10 +43,11 @@ struct Transport {
 
 // Where a path starts: a point that looks out over the hemisphere of `normal`.
 struct PathStart {
-    Vec3 origin;              // already lifted off its surface
-    Vec3 normal;              // of the hemisphere: the vertex normal that the runtime shades with
-    std::uint32_t key = 0;    // point set (math/sampler.h)
-    std::uint32_t index = 0;  // sample in it
+    Vec3 origin;                     // already lifted off its surface
+    Vec3 normal;                     // of the hemisphere: the vertex normal that the runtime shades with
+    std::uint32_t key = 0;           // point set (math/sampler.h)
+    std::uint32_t index = 0;         // sample in it
+    std::uint32_t triangle = kNone;  // that it lies on
 };
 
 // Origin and normal of a sample point: smooth position where it is reachable, else the offset flat point.

@@ -120,7 +120,7 @@ private:
         if (n == 0) return;
         integrator_.surface_starts(std::span(points_).first(n), std::span(sides_).first(n), *workspace_, surface_);
         for (std::uint32_t k = 0; k < n; ++k)
-            starts_[k] = {surface_[k].origin, surface_[k].normal, key, base + lane_[k]};
+            starts_[k] = {surface_[k].origin, surface_[k].normal, key, base + lane_[k], points_[k].triangle};
         integrator_.gather_irradiance(std::span(starts_).first(n), *workspace_, std::span(irradiance_).first(n),
                                       std::span(valid_).first(n));
         for (std::uint32_t k = 0; k < n; ++k) {

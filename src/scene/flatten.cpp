@@ -136,7 +136,8 @@ private:
                                       index,
                                       mesh_triangle,
                                       flags,
-                                      {}});
+                                      {},
+                                      0.0f});
             finish_triangle(out_.triangle_count() - 1);
         }
     }
@@ -154,6 +155,7 @@ private:
     void finish_triangle(std::uint32_t triangle) {
         WorldTriangle& t = out_.triangles[triangle];
         t.normal = out_.compute_normal(triangle);
+        t.tracer_error = out_.compute_tracer_error(triangle);
         const Vec3 face = t.normal;
         if (face == Vec3{}) {
             const Instance& instance = scene_.instances[t.instance];

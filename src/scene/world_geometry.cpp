@@ -4,6 +4,11 @@
 // whether it is flat to zero never hang on rounding, at any scale.
 #include "scene/world_geometry.h"
 
+#include <algorithm>
+#include <cmath>
+
+#include "math/constants.h"
+
 namespace lumel {
 namespace {
 
@@ -35,6 +40,16 @@ Vec3 face_normal(const Cross& front) {
 
 Vec3 WorldGeometry::compute_normal(std::uint32_t triangle) const {
     return face_normal(front_cross(*this, triangles[triangle]));
+}
+
+float WorldGeometry::compute_tracer_error(std::uint32_t triangle) const {
+    const auto [a, b, c] = corners(triangle);
+    const Vec3 extent = max(max(a, b), c) - min(min(a, b), c);
+    const float longest = max_component(extent);
+    constexpr float kThinnest = 0x1p-11f;  // area per squared length
+    const float area = std::max(0.5f * length(cross(b - a, c - a)), kThinnest * longest * longest);
+    if (!(area > 0.0f)) return 0.0f;
+    return kFloatEpsilon * longest + 3.0f * gamma_bound(8) * (extent.x * extent.y) * (extent.z / area);
 }
 
 Vec3 WorldGeometry::shading_normal(std::uint32_t triangle, float b1, float b2) const {

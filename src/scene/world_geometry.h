@@ -28,7 +28,8 @@ struct WorldTriangle {
     std::uint32_t instance = 0;  // into Scene::instances
     std::uint32_t mesh_triangle = 0;
     std::uint8_t flags = 0;
-    Vec3 normal{};  // unit, of the front face; zero for a zero-area triangle. Stored: paths ask for it at every bounce
+    Vec3 normal{};  // unit, of the front face; zero for a zero-area triangle. Stored: paths ask for it at every bounce,
+    float tracer_error = 0.0f;  // and for this: WorldGeometry::compute_tracer_error
 };
 
 // Instances of class probe and ignored have no triangles here. Triangles of an instance are consecutive and in mesh
@@ -60,6 +61,11 @@ struct WorldGeometry {
     [[nodiscard]] float area(std::uint32_t triangle) const;
     // From the corners; what `WorldTriangle::normal` is set to.
     [[nodiscard]] Vec3 compute_normal(std::uint32_t triangle) const;
+    // How far off the triangle's plane a point may seem to lie to a ray tracer that works in single precision, in
+    // metres: u E + 3 gamma(8) E_x E_y E_z / A, where E are the edges of the triangle's bounding box and A is its area
+    // (docs/ray-offset.md). Slivers thinner than about 1/1000 of their length get the bound of one of that shape: see
+    // Ray::skip.
+    [[nodiscard]] float compute_tracer_error(std::uint32_t triangle) const;
 };
 
 // Errors: invalid_input for non-finite world positions. Zero-area triangles are counted ("zero-area-triangle") and

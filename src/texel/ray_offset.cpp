@@ -40,29 +40,16 @@ float plane_error(const Corners& p, float b1, float b2, Vec3 normal) {
     return gamma_bound(7) * dot(abs(normal), magnitude);
 }
 
-float tracer_error(const Corners& p) {
-    const Vec3 extent = max(max(p[0], p[1]), p[2]) - min(min(p[0], p[1]), p[2]);
-    const float longest = max_component(extent);
-    constexpr float kThinnest = 0x1p-11f;  // area per squared length
-    const float area = std::max(0.5f * length(cross(p[1] - p[0], p[2] - p[0])), kThinnest * longest * longest);
-    if (!(area > 0.0f)) return 0.0f;
-    return kFloatEpsilon * longest + 3.0f * gamma_bound(8) * (extent.x * extent.y) * (extent.z / area);
-}
-
 }  // namespace
 
 float plane_error(const WorldGeometry& geometry, std::uint32_t triangle, float b1, float b2, Vec3 normal) {
     return plane_error(geometry.corners(triangle), b1, b2, normal);
 }
 
-float tracer_error(const WorldGeometry& geometry, std::uint32_t triangle) {
-    return tracer_error(geometry.corners(triangle));
-}
-
 Vec3 offset_origin(const WorldGeometry& geometry, std::uint32_t triangle, float b1, float b2, Vec3 side_normal) {
-    const Vec3 p = geometry.position(triangle, b1, b2);
     const Corners corners = geometry.corners(triangle);
-    const float d = plane_error(corners, b1, b2, side_normal) + tracer_error(corners);
+    const Vec3 p = corners[0] * (1.0f - b1 - b2) + corners[1] * b1 + corners[2] * b2;
+    const float d = plane_error(corners, b1, b2, side_normal) + geometry.triangles[triangle].tracer_error;
     return {add_away(p.x, d * side_normal.x), add_away(p.y, d * side_normal.y), add_away(p.z, d * side_normal.z)};
 }
 

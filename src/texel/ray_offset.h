@@ -11,11 +11,6 @@ namespace lumel {
 // gamma(7) sum_c |n_c| sum_i |b_i| |p_i,c|. Barycentrics in [0, 1].
 float plane_error(const WorldGeometry& geometry, std::uint32_t triangle, float b1, float b2, Vec3 normal);
 
-// How far off the triangle's plane a point may seem to lie to a ray tracer that works in single precision, in metres:
-// u E + 3 gamma(8) E_x E_y E_z / A, where E are the edges of the triangle's bounding box and A is its area. Slivers
-// thinner than about 1/1000 of their length get the bound of one of that shape: see Ray::skip.
-float tracer_error(const WorldGeometry& geometry, std::uint32_t triangle);
-
 // P + (plane_error + tracer_error) * side_normal, rounded away from the plane per axis. `side_normal` is the geometric
 // normal of the side that the ray leaves. A ray from here into that side does not meet the triangle again; occluders
 // nearer than twice the offset may be missed.

@@ -85,8 +85,8 @@ TEST(RayOffset, SliversAreBounded) {
     mesh.positions = {{1, 1, 1}, {1, 1, 1}, {1, 1, 1}};
     builder.add_mesh(mesh);
     const World world = builder.build();
-    EXPECT_LT(tracer_error(world.geometry, 0), 0.005f);  // of a sliver of 1.7 m without breadth
-    EXPECT_EQ(tracer_error(world.geometry, 1), 0.0f);
+    EXPECT_LT(world.geometry.triangles[0].tracer_error, 0.005f);  // of a sliver of 1.7 m without breadth
+    EXPECT_EQ(world.geometry.triangles[1].tracer_error, 0.0f);
 }
 
 TEST(SmoothPosition, RoundsOffASphere) {

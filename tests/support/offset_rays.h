@@ -136,7 +136,7 @@ inline OffsetCount trace_offset_rays(std::uint32_t triangles, std::uint32_t rays
             // only a few floats across: there the ray may pass beside the lid.
             const Vec3 n = geometry.geometric_normal(t) * (t % 2 == 0 ? 1.0f : -1.0f);
             const Vec3 origin = offset_origin(geometry, t, 0.3f, 0.3f, n);
-            const float offset = plane_error(geometry, t, 0.3f, 0.3f, n) + tracer_error(geometry, t);
+            const float offset = plane_error(geometry, t, 0.3f, 0.3f, n) + geometry.triangles[t].tracer_error;
             const auto [p0, p1, p2] = geometry.corners(t);
             const float longest = std::max({length(p1 - p0), length(p2 - p0), length(p2 - p1)});
             if (2.0f * geometry.area(t) / longest < 16.0f * offset) continue;
