@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <string>
 
@@ -29,6 +30,12 @@ std::string duration(double seconds) {
     else
         std::snprintf(text, sizeof text, "%d h %02d min", static_cast<int>(seconds) / 3600,
                       static_cast<int>(seconds) / 60 % 60);
+    return text;
+}
+
+std::string rate_text(std::uint64_t rays, double mega_per_second) {
+    char text[48] = "";
+    if (rays > 0) std::snprintf(text, sizeof text, ", %.1f Mrays/s", mega_per_second);
     return text;
 }
 
@@ -70,8 +77,9 @@ public:
                 break;
             case ProgressStyle::plain:
                 if (done && elapsed < 0.5) break;
-                std::fprintf(stderr, "%s: %.0f %%, %s%s\n", stage_.c_str(), 100.0 * progress.fraction,
-                             duration(elapsed).c_str(), done ? "" : (", " + duration(left) + " left").c_str());
+                std::fprintf(stderr, "%s: %.0f %%, %s%s%s\n", stage_.c_str(), 100.0 * progress.fraction,
+                             duration(elapsed).c_str(), rate_text(progress.rays, rate).c_str(),
+                             done ? "" : (", " + duration(left) + " left").c_str());
                 break;
             case ProgressStyle::automatic: bar(progress, elapsed, left, rate); break;
         }
@@ -90,10 +98,8 @@ private:
         const int filled = static_cast<int>(std::lround(progress.fraction * kCells));
         std::string cells(static_cast<std::size_t>(filled), '#');
         cells.resize(kCells, '.');
-        char tail[96] = "";
-        if (progress.rays > 0) std::snprintf(tail, sizeof tail, ", %.1f Mrays/s", rate);
         std::fprintf(stderr, "\r\033[K%-12s [%s] %3.0f %%%s, %s", stage_.c_str(), cells.c_str(),
-                     100.0 * progress.fraction, tail,
+                     100.0 * progress.fraction, rate_text(progress.rays, rate).c_str(),
                      progress.fraction >= 1.0 ? duration(elapsed).c_str() : (duration(left) + " left").c_str());
         std::fflush(stderr);
         open_line_ = true;

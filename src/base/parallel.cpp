@@ -71,15 +71,14 @@ void ThreadPool::run(const std::function<void(unsigned)>& task) {
 
 bool parallel_for(Context& context, std::size_t count, std::size_t grain,
                   const std::function<void(const ChunkRange&)>& body, std::string_view stage,
-                  const std::atomic<std::uint64_t>* rays) {
+                  const std::function<std::uint64_t()>& rays) {
     LUMEL_CHECK(grain > 0, grain);
     const std::size_t chunks = (count + grain - 1) / grain;
     std::atomic<std::size_t> next{0};
     std::atomic<std::size_t> finished{0};
     const auto report = [&] {
         const double done = static_cast<double>(finished.load(std::memory_order_relaxed));
-        context.report(stage, chunks == 0 ? 1.0 : done / static_cast<double>(chunks),
-                       rays ? rays->load(std::memory_order_relaxed) : 0);
+        context.report(stage, chunks == 0 ? 1.0 : done / static_cast<double>(chunks), rays ? rays() : 0);
     };
     context.pool().run([&](unsigned worker) {
         auto last_report = std::chrono::steady_clock::now();

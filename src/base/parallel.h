@@ -35,9 +35,9 @@ struct ChunkRange {
 
 // Calls body for each chunk of `grain` consecutive items of [0, count). Chunks are claimed in order by free workers.
 // Returns false if the context was cancelled before all chunks ran. `stage` reports progress where it is not empty;
-// `rays` (optional) is polled for the progress report.
+// `rays` (optional) counts the rays traced so far, for the progress report.
 bool parallel_for(Context& context, std::size_t count, std::size_t grain,
                   const std::function<void(const ChunkRange&)>& body, std::string_view stage = {},
-                  const std::atomic<std::uint64_t>* rays = nullptr);
+                  const std::function<std::uint64_t()>& rays = {});
 
 }  // namespace lumel

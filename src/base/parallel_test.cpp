@@ -100,7 +100,7 @@ TEST(ThreadParallelFor, ReportsFromTheCallingThreadAndEndsAtOne) {
             std::this_thread::sleep_for(std::chrono::milliseconds(5));  // 250 ms in all: two or so reports on the way
             ++rays;
         },
-        "trace", &rays);
+        "trace", [&] { return rays.load(); });
     ASSERT_GE(fractions.size(), 2u);
     EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
     EXPECT_EQ(fractions.back(), 1.0);

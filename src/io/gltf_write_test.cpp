@@ -142,7 +142,7 @@ void expect_uvs_arrived(const Written& written) {
     EXPECT_GT(compared, 0u);
 }
 
-const Json& node_named(const Json& root, const std::string& name) {
+const Json& node_named(const Json& root, const char* name) {
     for (const Json& node : root["nodes"])
         if (node.value("name", "") == name) return node;
     ADD_FAILURE() << "no node " << name;

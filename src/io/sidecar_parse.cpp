@@ -12,11 +12,20 @@ namespace {
 
 constexpr double kRadiansPerDegree = 0.017453292519943295;
 
+// Colours may be spelt both ways: the British key of one that ends in "color", else nothing.
+std::string british(std::string_view key) {
+    constexpr std::string_view kAmerican = "color";
+    return key.ends_with(kAmerican) ? std::string(key.substr(0, key.size() - 1)) + "ur" : std::string();
+}
+
 // Every object is checked for keys that Lumel does not know: a misspelt setting must not be silently without effect.
 Status check_keys(const Json& object, std::initializer_list<std::string_view> known, const std::string& where) {
     if (!object.is_object()) return invalid(where, "must be an object");
     for (auto member = object.begin(); member != object.end(); ++member) {
-        if (std::find(known.begin(), known.end(), member.key()) != known.end()) continue;
+        const auto is_member = [&](std::string_view key) {
+            return member.key() == key || member.key() == british(key);
+        };
+        if (std::any_of(known.begin(), known.end(), is_member)) continue;
         std::string list;
         for (const std::string_view key : known) list += (list.empty() ? "" : ", ") + std::string(key);
         return invalid(where, "unknown key '" + member.key() + "'", "known keys: " + list);
@@ -40,7 +49,12 @@ Result<std::optional<Vec3>> vector_of(const Json& object, const char* key, const
     return std::optional<Vec3>(Vec3{static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])});
 }
 
-Result<std::optional<Vec3>> color_of(const Json& object, const char* key, const std::string& where) {
+Result<std::optional<Vec3>> color_of(const Json& object, const char* american, const std::string& where) {
+    const std::string other = british(american);
+    const bool is_british = find(object, other.c_str()) != nullptr;
+    if (is_british && find(object, american))
+        return invalid(where, std::string("has both '") + american + "' and '" + other + "'", "keep one of them");
+    const char* key = is_british ? other.c_str() : american;
     LUMEL_TRY(const std::optional<Vec3> color, vector_of(object, key, where));
     if (color && std::min({color->x, color->y, color->z}) < 0.0f)
         return invalid(where, std::string("'") + key + "' has a negative component");

@@ -69,7 +69,7 @@ TEST(Sidecar, AnEmptyOneChangesNothing) {
 
 TEST(Sidecar, SetsLightsByNodeOrLightName) {
     Room with(R"({"version": 1, "lights": {
-        "bulb": {"radius": 0.05, "bake": "indirect", "indirect_scale": 2, "indirect_color": [1, 0.5, 0]},
+        "bulb": {"radius": 0.05, "bake": "indirect", "indirect_scale": 2, "indirect_colour": [1, 0.5, 0]},
         "sun": {"angle_degrees": 0.53}}})");
     const auto loaded = with.load();
     ASSERT_TRUE(loaded.ok()) << loaded.error().text();
@@ -231,11 +231,13 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"'radius' is for point and spot", R"({"lights": {"sun": {"radius": 1}}})"},
         Fault{"'angle_degrees' is for suns", R"({"lights": {"bulb": {"angle_degrees": 1}}})"},
         Fault{"one of: all, indirect, none", R"({"lights": {"bulb": {"bake": "some"}}})"},
+        Fault{"has both 'indirect_color' and 'indirect_colour'",
+              R"({"lights": {"bulb": {"indirect_color": [0, 1, 0], "indirect_colour": [0, 1, 0]}}})"},
         Fault{"'indirect_color' has a negative", R"({"lights": {"bulb": {"indirect_color": [0, -1, 0]}}})"},
         Fault{"no node 'wall'", R"({"nodes": {"wall": {"class": "probe"}}})"},
         Fault{"one of: lightmap", R"({"nodes": {"floor": {"class": "lit"}}})"},
         Fault{"'texel_density' is", R"({"nodes": {"floor": {"texel_density": 0}}})"},
-        Fault{"unknown key 'colour'", R"({"sky": {"colour": [1, 1, 1]}})"},
+        Fault{"unknown key 'tint'", R"({"sky": {"tint": [1, 1, 1]}})"},
         Fault{"either a 'color' or a 'map'", R"({"sky": {}})"},
         Fault{"either a 'color' or a 'map'", R"({"sky": {"color": [1, 1, 1], "map": "a.hdr"}})"},
         Fault{"array of 3 numbers", R"({"sky": {"color": [1, 1]}})"},

@@ -583,6 +583,7 @@ Result<RadianceSums> gather_page(const TexelBuffer& texels, const ChartSet& char
 
     // Small enough that a cancelled bake stops within a fraction of a second.
     constexpr std::size_t kTexelsPerChunk = 16;
+    const std::uint64_t rays_before = transport.tracer.statistics().rays;
     const bool done = parallel_for(
         context, count, kTexelsPerChunk,
         [&](const ChunkRange& range) {
@@ -595,7 +596,7 @@ Result<RadianceSums> gather_page(const TexelBuffer& texels, const ChartSet& char
                 integrator.gather_texel(std::span(points).first(n), id, *workspaces[range.worker], sums, i, context);
             }
         },
-        "trace");
+        "trace", [&] { return transport.tracer.statistics().rays - rays_before; });
     if (!done || context.cancelled()) return Error{ErrorCode::cancelled, "the bake was cancelled", {}, {}};
     return sums;
 }

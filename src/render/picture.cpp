@@ -169,6 +169,7 @@ Result<Image> render_picture(const Transport& transport, const PathOptions& path
     std::vector<std::unique_ptr<PixelTracer>> tracers(context.threads());
     for (auto& tracer : tracers)
         tracer = std::make_unique<PixelTracer>(transport, integrator, path, lens, options, baked);
+    const std::uint64_t rays_before = transport.tracer.statistics().rays;
     const bool done = parallel_for(
         context, std::size_t{options.width} * options.height, 32,
         [&](const ChunkRange& range) {
@@ -179,7 +180,7 @@ Result<Image> render_picture(const Transport& transport, const PathOptions& path
                 for (std::size_t c = 0; c < 3; ++c) image.at(x, y)[c] = color[c];
             }
         },
-        "render");
+        "render", [&] { return transport.tracer.statistics().rays - rays_before; });
     if (!done) return Error{ErrorCode::cancelled, "the render was cancelled", {}, {}};
     return image;
 }
