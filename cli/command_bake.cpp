@@ -16,7 +16,7 @@ namespace {
 
 struct Options {
     std::string scene, output, resolution, max_memory, progress;
-    std::string preset = "medium", uv1 = "automatic", stop = "fixed";
+    std::string preset = "medium", uv1 = "automatic", stop = "fixed", denoise = "auto";
     std::uint32_t views = 2, view_samples = 32;
     BakeOptions values;
     LightOptions light;
@@ -43,6 +43,7 @@ Result<BakeOptions> read_options(const Options& options) {
               : options.uv1 == "mesh"   ? Uv1Choice::mesh
               : options.uv1 == "ignore" ? Uv1Choice::ignore
                                         : Uv1Choice::automatic;
+    if (options.denoise != "auto") out.denoise = options.denoise == "on";
     out.stop = options.stop == "flux" ? StopRule::flux : StopRule::fixed;
     return out;
 }
@@ -149,6 +150,9 @@ Run add_bake(CLI::App& app) {
     app.add_option("--uv1", options->uv1,
                    "TEXCOORD_1: automatic, scene (keep as one atlas), mesh (keep charts, repack), ignore")
         ->check(CLI::IsMember({"automatic", "scene", "mesh", "ignore"}))
+        ->group(texels);
+    app.add_option("--denoise", options->denoise, "auto (previews only), on or off: smooth the noise on the surface")
+        ->check(CLI::IsMember({"auto", "on", "off"}))
         ->group(texels);
     app.add_option("--dilate", values.dilate, "Rings of texels filled around charts")
         ->check(CLI::Range(0u, 64u))

@@ -10,13 +10,14 @@
 
 namespace lumel {
 
-// Texel budget and samples where neither density nor samples are asked: preview 0.25 M texels, 64 samples;
-// medium 2 M, 512; production 8 M, 4096.
+// Texel budget and samples where neither density nor samples are asked: preview 0.25 M texels, 128 samples;
+// medium 2 M, 512; production 8 M, 4096. Previews are denoised.
 enum class Preset : std::uint8_t { preview, medium, production };
 
 struct PresetValues {
     double texel_budget;
     std::uint32_t samples;
+    bool denoise;
 };
 PresetValues preset_values(Preset preset);
 
@@ -57,7 +58,8 @@ struct BakeOptions {
     std::uint32_t max_page = 4096;                              // largest page edge; 64..16384
     double texels_per_metre = 0.0;                              // 0: from the preset's texel budget
     Uv1Choice uv1 = Uv1Choice::automatic;
-    std::uint32_t dilate = 2;  // rings of texels filled around charts, 0..64
+    std::optional<bool> denoise;  // post/denoise.h; without a value: the preset's
+    std::uint32_t dilate = 2;     // rings of texels filled around charts, 0..64
     // Light
     SkyOptions sky;
     SunOptions sun;

@@ -13,6 +13,7 @@
 #include "light/light_set.h"
 #include "math/normal_quantile.h"
 #include "path/path_integrator.h"
+#include "post/denoise.h"
 #include "post/lightmap.h"
 #include "scene/world_geometry.h"
 #include "texel/texel_buffer.h"
@@ -232,6 +233,10 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
         for (const std::uint32_t traced : sums.traced) report.samples += traced;
         scale_layers(sums, options.direct_scale, options.indirect_scale);
         Lightmap map;
+        if (options.denoise.value_or(preset_values(options.preset).denoise)) {
+            const StageTimer timer(report, "denoise");
+            LUMEL_TRY_STATUS(denoise(texels, {}, sums, context));
+        }
         {
             const StageTimer timer(report, "post");
             map = finish_page(texels, std::move(sums), std::move(surface), options.dilate);

@@ -184,6 +184,7 @@ Json options_json(const BakeOptions& options) {
             {"max_page", options.max_page},
             {"texels_per_metre", options.texels_per_metre},
             {"uv1", kUv1[static_cast<std::size_t>(options.uv1)]},
+            {"denoise", options.denoise.value_or(preset_values(options.preset).denoise)},
             {"dilate", options.dilate},
             {"two_sided", options.two_sided},
             {"ao_distance", options.ao_distance},
