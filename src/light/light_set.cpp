@@ -58,7 +58,7 @@ void LightSet::add_lights() {
         const Light& light = scene_->lights[index];
         if (!emits(light)) continue;
         switch (light.shape) {
-            case LightShape::sun: suns_.push_back({SunLight(light), index}); break;
+            case LightShape::sun: add_sun(index); break;
             case LightShape::point:
             case LightShape::spot: add_shape(PunctualLight(light), index); break;
             case LightShape::rectangle: add_shape(RectangleLight(light), index); break;
@@ -66,6 +66,12 @@ void LightSet::add_lights() {
             case LightShape::sphere: add_shape(SphereLight(light), index); break;
         }
     }
+}
+
+void LightSet::add_sun(std::uint32_t light) {
+    const SunLight shape(scene_->lights[light]);
+    const std::array<Vec3, 2> scale{artist_scale(light, false), artist_scale(light, true)};
+    suns_.push_back({shape, scale, {scaled(shape.sample({}), scale[0]), scaled(shape.sample({}), scale[1])}});
 }
 
 void LightSet::add_shape(Shape shape, std::uint32_t light) {
@@ -109,11 +115,13 @@ Vec3 LightSet::artist_scale(std::uint32_t light, bool bounced) const {
 }
 
 LightSample LightSet::sample_sun(std::size_t sun, Vec2 u, bool bounced) const {
-    return scaled(suns_[sun].shape.sample(u), artist_scale(suns_[sun].light, bounced));
+    const Sun& s = suns_[sun];
+    return s.shape.has_size() ? scaled(s.shape.sample(u), s.scale[bounced]) : s.centre[bounced];
 }
 
 LightHit LightSet::sun(std::size_t sun, Vec3 direction, bool bounced) const {
-    return scaled(suns_[sun].shape.intersect(direction), artist_scale(suns_[sun].light, bounced));
+    const Sun& s = suns_[sun];
+    return s.shape.has_size() ? scaled(s.shape.intersect(direction), s.scale[bounced]) : LightHit{};
 }
 
 // A turn by the sky's rotation about +Y, and back.

@@ -5,6 +5,7 @@
 // (points, spots, area lights, emissive triangles), chosen with probability proportional to its power.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -69,7 +70,8 @@ public:
 private:
     struct Sun {
         SunLight shape;
-        std::uint32_t light;  // into the scene's
+        std::array<Vec3, 2> scale;          // the artist's; [1] after a bounce
+        std::array<LightSample, 2> centre;  // the sample of a sun without size
     };
     using Shape = std::variant<PunctualLight, RectangleLight, DiscLight, SphereLight>;
     struct Local {
@@ -82,6 +84,7 @@ private:
     [[nodiscard]] Vec3 to_world(Vec3 direction) const;
     void add_sky();
     void add_lights();
+    void add_sun(std::uint32_t light);
     void add_shape(Shape shape, std::uint32_t light);
     void add_emissive_triangles();
     void share_local_selection();

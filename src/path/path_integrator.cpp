@@ -26,7 +26,8 @@ namespace {
 // sun.
 enum Pair : std::uint32_t { kDirectionPair, kSkyPair, kLocalPair, kChoicePair, kFirstSunPair };
 
-constexpr std::uint32_t kRouletteFrom = 3;         // the first vertex after which a path may be ended by chance
+constexpr std::uint32_t kRouletteFrom = 3;             // the first vertex after which a path may be ended by chance
+constexpr std::uint32_t kDirectionSalt = 0x51ed270bu;  // of the alpha keys of sampled directions
 constexpr float kShadowShortening = 1.0f - 1e-4f;  // of shadow rays to finite lights, against hitting the light itself
 
 float power_heuristic(float pdf, float other_pdf) {
@@ -35,6 +36,11 @@ float power_heuristic(float pdf, float other_pdf) {
     // Squares overflow for nearly singular densities; there the larger one has it all.
     if (!std::isfinite(a)) return std::isfinite(b) ? 1.0f : 0.5f;
     return a / (a + b);
+}
+
+// Of the rays from one vertex of a path: different for each, and mixed by who uses it.
+std::uint32_t alpha_key(const PathStart& start, std::uint32_t salt) {
+    return start.key + start.index * 0x85ebca6bu + salt * 0x9e3779b9u;
 }
 
 bool is_black(Vec3 c) { return c.x <= 0.0f && c.y <= 0.0f && c.z <= 0.0f; }
@@ -132,11 +138,12 @@ public:
     // `pdf_of(cosine)`: density of the direction sampling at this vertex, for MIS. `value_of(cosine)`: what multiplies
     // the light sample's weight.
     template <class PdfOf, class ValueOf>
-    void sample_all(std::uint32_t lane, const Sampler& sampler, std::uint32_t first_pair, bool bounced, PdfOf&& pdf_of,
+    void sample_all(std::uint32_t lane, const PathStart& start, std::uint32_t first_pair, bool bounced, PdfOf&& pdf_of,
                     ValueOf&& value_of) {
+        const Sampler sampler(start.key, start.index);
         const auto& vertex = workspace_.vertex[lane];
         const LightSet& lights = transport_.lights;
-        const std::uint32_t key = sampler.hash(first_pair);
+        const std::uint32_t key = alpha_key(start, first_pair);
         for (std::size_t sun = 0; sun < lights.sun_count(); ++sun) {
             const std::uint32_t pair = first_pair + kFirstSunPair + static_cast<std::uint32_t>(sun);
             const Vec2 u = lights.samples_sun(sun) ? sampler.pair(pair) : Vec2{};
@@ -214,7 +221,7 @@ void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w
         ray.origin = vertex.position;
         ray.direction = vertex.direction;
         ray.skip = starts[lane].triangle;
-        ray.alpha_key = sampler.hash(0x51ed270bu);
+        ray.alpha_key = alpha_key(starts[lane], kDirectionSalt);
     }
     transport_.tracer.closest(std::span(w.rays).first(count), std::span(w.hits).first(count));
 
@@ -236,8 +243,7 @@ void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w
         for (std::size_t i = 0; i < alive; ++i) {
             const std::uint32_t lane = w.lanes[i];
             queue.sample_all(
-                lane, Sampler(starts[lane].key, starts[lane].index), 0, false,
-                [](float cosine) { return GatherHemisphere::pdf(cosine); },
+                lane, starts[lane], 0, false, [](float cosine) { return GatherHemisphere::pdf(cosine); },
                 [](float) {
                     return Vec3{1, 1, 1};
                 });
@@ -274,6 +280,7 @@ void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w
             if (hit.missed()) {
                 if (lights.has_sky()) arrive(lane, Layer::sky, lights.sky(vertex.direction));
                 for (std::size_t sun = 0; sun < lights.sun_count(); ++sun) {
+                    if (!lights.samples_sun(sun)) continue;  // no ray meets a sun without size
                     const LightHit light = lights.sun(sun, vertex.direction, !first);
                     if (light.pdf > 0.0f) arrive(lane, Layer::direct, light);
                 }
@@ -307,8 +314,7 @@ void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w
             const std::uint32_t lane = w.lanes[i];
             const Vec3 scale = w.throughput[lane] * w.vertex[lane].reflectance;
             queue.sample_all(
-                lane, Sampler(starts[lane].key, starts[lane].index), first_pair, true,
-                [](float cosine) { return CosineHemisphere::pdf(cosine); },
+                lane, starts[lane], first_pair, true, [](float cosine) { return CosineHemisphere::pdf(cosine); },
                 [&](float cosine) { return scale * cosine; });
         }
         queue.resolve([&](const auto& event) { w.bounced[event.lane] += event.value; });
@@ -334,7 +340,7 @@ void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w
             ray.origin = vertex.position;
             ray.direction = vertex.direction;
             ray.skip = vertex.triangle;
-            ray.alpha_key = sampler.hash(0x51ed270bu + first_pair);
+            ray.alpha_key = alpha_key(starts[lane], kDirectionSalt + first_pair);
             w.lanes[kept++] = lane;
         }
         alive = kept;
