@@ -67,6 +67,16 @@ float most_samples(const std::vector<PagePreview>& previews) {
     return most;
 }
 
+// The files that are baked must outlive the bake: baking out/scene.glb into out/ would replace it.
+Status check_not_input(const std::filesystem::path& output, const std::filesystem::path& input) {
+    if (input.empty() || !is_output_file(input.filename().string())) return success();
+    std::error_code ignored;
+    const std::filesystem::path folder = input.has_parent_path() ? input.parent_path() : ".";
+    if (!std::filesystem::equivalent(folder, output, ignored)) return success();
+    return Error{ErrorCode::io, "is read by this bake and would be replaced by its output", input.string(),
+                 "choose another folder with -o"};
+}
+
 }  // namespace
 
 struct BakeWriter::Impl {
@@ -112,6 +122,8 @@ BakeWriter& BakeWriter::operator=(BakeWriter&&) noexcept = default;
 
 Result<BakeWriter> BakeWriter::create(const std::filesystem::path& output, const LoadedScene& loaded,
                                       const BakeOptions& options, const Context& context) {
+    LUMEL_TRY_STATUS(check_not_input(output, loaded.scene.source));
+    LUMEL_TRY_STATUS(check_not_input(output, options.sky.file));
     LUMEL_TRY(OutputFolder folder, OutputFolder::create(output));
     return BakeWriter(
         std::unique_ptr<Impl>(new Impl{std::move(folder), loaded, options, context, {}, {}, {}, {}, {}, {}}));
@@ -149,10 +161,10 @@ Status BakeWriter::write_scene() {
 Status BakeWriter::finish(const BakeReport& report, const Diagnostics& diagnostics) {
     LUMEL_TRY_STATUS(impl_->write_previews());
     LUMEL_TRY_STATUS(write_report(folder() / kReportFile, report, impl_->options, diagnostics));
-    LUMEL_TRY_STATUS(
-        write_manifest(folder() / kManifestFile, {impl_->loaded.scene, impl_->charts, impl_->atlas, impl_->options,
-                                                  report, impl_->pages, impl_->geometry_hash}));
-    return impl_->output.commit();
+    return write_manifest(folder() / kManifestFile, {impl_->loaded.scene, impl_->charts, impl_->atlas, impl_->options,
+                                                     report, impl_->pages, impl_->geometry_hash});
 }
+
+Status BakeWriter::commit() { return impl_->output.commit(); }
 
 }  // namespace lumel

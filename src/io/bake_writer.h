@@ -19,7 +19,7 @@ public:
     // and `context` (which may cancel the writing) for its lifetime.
     static Result<BakeWriter> create(const std::filesystem::path& output, const LoadedScene& loaded,
                                      const BakeOptions& options, const Context& context);
-    ~BakeWriter();  // without finish() nothing is left behind
+    ~BakeWriter();  // without commit() nothing is left behind
     BakeWriter(BakeWriter&&) noexcept;
     BakeWriter& operator=(BakeWriter&&) noexcept;
 
@@ -30,10 +30,13 @@ public:
     // After the last page: scene.glb.
     Status write_scene();
 
-    // Previews over all pages, manifest, report; then the folder appears.
+    // Previews over all pages, manifest, report.
     Status finish(const BakeReport& report, const Diagnostics& diagnostics);
 
-    // Where files are until finish(); further ones (preview_view_<k>.png) may be put there.
+    // The folder appears.
+    Status commit();
+
+    // Where files are until commit(); further ones (preview_view_<k>.png) may be put there.
     [[nodiscard]] const std::filesystem::path& folder() const;
 
 private:

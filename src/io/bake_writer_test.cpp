@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 
+#include "base/try.h"
 #include "encode/l1.h"
 #include "image/tonemap.h"
 #include "io/baked.h"
@@ -263,7 +264,8 @@ struct Baked {
         report.tracer = "none";
         report.rays_per_second = std::numeric_limits<double>::infinity();
         loaded.context.diagnostics.add("some-code", "A message.", "somewhere \"quoted\"");
-        return writer->finish(report, loaded.context.diagnostics);
+        LUMEL_TRY_STATUS(writer->finish(report, loaded.context.diagnostics));
+        return writer->commit();
     }
     Loaded loaded;
     WorldGeometry geometry;

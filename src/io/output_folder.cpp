@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
+#include <fstream>
 #include <functional>
 #include <iterator>
 #include <string_view>
@@ -69,6 +70,25 @@ std::vector<fs::path> entries(const fs::path& folder, std::error_code& error) {
     return out;
 }
 
+// manifest.json goes first and says near its beginning who wrote it.
+bool is_a_bake(const fs::path& folder) {
+    char head[256] = {};
+    std::ifstream(folder / kManifestFile, std::ios::binary).read(head, sizeof head - 1);
+    return std::string_view(head).find("\"Lumel\"") != std::string_view::npos;
+}
+
+// Names that a bake gives its files are common ones: what stands there may be somebody's scene.
+Status check_not_foreign(const fs::path& folder, const fs::path& target) {
+    if (is_a_bake(folder)) return success();
+    std::error_code error;
+    for (const fs::path& file : entries(folder, error))
+        if (is_output_file(file.filename().string()))
+            return Error{ErrorCode::io, "exists and would be replaced, but no finished bake is in this folder",
+                         (target / file.filename()).string(), "choose another folder with -o, or move the file away"};
+    if (error) return folder_error("listing the folder", target, error);
+    return success();
+}
+
 // Moves files one by one and can take all of it back.
 class Moves {
 public:
@@ -124,6 +144,7 @@ void OutputFolder::discard() noexcept {
 
 Result<OutputFolder> OutputFolder::create(const fs::path& target) {
     std::error_code error;
+    if (target.empty()) return Error{ErrorCode::usage, "the output folder has no name", {}, "give one with -o"};
     // Through links to the real place, so that moving stays within one file system; without a trailing slash.
     fs::path real = fs::weakly_canonical(fs::absolute(target, error), error);
     if (error) return folder_error("finding the folder", target, error);
@@ -135,6 +156,7 @@ Result<OutputFolder> OutputFolder::create(const fs::path& target) {
         return Error{ErrorCode::io, "is the root folder", target.string(), "choose another folder with -o"};
     if (fs::exists(status) && ::access(real.c_str(), W_OK | X_OK) != 0)
         return system_error("writing to the folder", target, errno);
+    if (fs::exists(status)) LUMEL_TRY_STATUS(check_not_foreign(real, target));
     fs::create_directories(real.parent_path(), error);
     if (error) return folder_error("creating the folder", target, error);
     remove_stale(real);

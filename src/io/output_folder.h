@@ -11,7 +11,8 @@ namespace lumel {
 class OutputFolder {
 public:
     // Makes `<target>.partial-<process id>` beside the target, and parents as needed; removes those that killed
-    // processes left. Errors where the target is no folder or cannot be written to: before hours of work, not after.
+    // processes left. Errors where the target is no folder, cannot be written to, or holds files of our names that no
+    // bake wrote: before hours of work, not after.
     static Result<OutputFolder> create(const std::filesystem::path& target);
 
     // Without commit() the partial folder goes, and with it all that is in it.

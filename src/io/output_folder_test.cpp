@@ -30,6 +30,8 @@ std::set<std::string> names_in(const fs::path& folder) {
 
 using Names = std::set<std::string>;
 
+constexpr const char* kOldManifest = R"({ "version": 1, "generator": "Lumel" })";
+
 TEST(OutputFolder, AppearsOnlyWhenCommitted) {
     const TemporaryFolder folder;
     auto output = OutputFolder::create(folder / "a/b/out/");
@@ -57,7 +59,7 @@ TEST(OutputFolder, ReplacesOurFilesAndKeepsForeignOnes) {
     const TemporaryFolder folder;
     fs::create_directory(folder / "out");
     for (const char* name : {"manifest.json", "scene.glb", "lightmap_0.exr", "lightmap_7.exr", "preview_view_1.png"})
-        put(folder / "out" / name, "old");
+        put(folder / "out" / name, kOldManifest);
     for (const char* name : {"notes.txt", "lightmap_x.exr", "lightmap_.exr", "my_manifest.json"})
         put(folder / "out" / name, "foreign");
     auto output = OutputFolder::create(folder / "out");
@@ -75,7 +77,7 @@ TEST(OutputFolder, ReplacesOurFilesAndKeepsForeignOnes) {
 TEST(OutputFolder, AFailureHalfWayPutsTheOldFilesBack) {
     const TemporaryFolder folder;
     fs::create_directories(folder / "out/zzz");
-    put(folder / "out/manifest.json", "old");
+    put(folder / "out/manifest.json", kOldManifest);
     put(folder / "out/scene.glb", "old");
     auto output = OutputFolder::create(folder / "out");
     ASSERT_TRUE(output.ok());
@@ -84,8 +86,22 @@ TEST(OutputFolder, AFailureHalfWayPutsTheOldFilesBack) {
     ASSERT_FALSE(status.ok());
     EXPECT_EQ(status.error().code, ErrorCode::io);
     EXPECT_EQ(names_in(folder / "out"), (Names{"manifest.json", "scene.glb", "zzz"}));
-    EXPECT_EQ(text_of(folder / "out/manifest.json"), "old");
+    EXPECT_EQ(text_of(folder / "out/manifest.json"), kOldManifest);
     EXPECT_EQ(text_of(folder / "out/scene.glb"), "old");
+}
+
+TEST(OutputFolder, FilesOfOurNamesThatNoBakeWroteAreNotReplaced) {
+    for (const char* name : {"scene.glb", "report.json", "manifest.json"}) {
+        const TemporaryFolder folder;
+        fs::create_directory(folder / "out");
+        put(folder / "out" / name, R"({ "name": "a web page" })");
+        const auto output = OutputFolder::create(folder / "out");
+        ASSERT_FALSE(output.ok()) << name;
+        EXPECT_NE(output.error().text().find(name), std::string::npos) << output.error().text();
+        EXPECT_EQ(names_in(folder / "out"), Names{name});
+        EXPECT_EQ(folder.entries(), 1u);
+    }
+    EXPECT_FALSE(OutputFolder::create("").ok());
 }
 
 TEST(OutputFolder, AFileInThePlaceOfTheFolderIsAnErrorAtOnce) {
