@@ -445,7 +445,7 @@ TEST(ChartPicture, OwnersAreThoseOfTheMasks) {
     // The checker leaves out what rounding may touch, a thousandth of a texel.
     const auto expected = static_cast<double>(judge(level, l).texels);
     EXPECT_NEAR(static_cast<double>(owned), expected, 1e-3 * expected);
-    const auto rgb = colour_ids(ids);
+    const auto rgb = color_ids(ids);
     for (std::size_t i = 0; i < ids.size(); ++i)
         EXPECT_EQ(ids[i] == kNone, rgb[3 * i] + rgb[3 * i + 1] + rgb[3 * i + 2] == 0) << i;
 }

@@ -30,7 +30,7 @@ std::vector<std::uint32_t> chart_ids(const Scene& scene, const ChartSet& charts,
     return ids;
 }
 
-std::vector<std::uint8_t> colour_ids(const std::vector<std::uint32_t>& ids) {
+std::vector<std::uint8_t> color_ids(const std::vector<std::uint32_t>& ids) {
     std::vector<std::uint8_t> rgb;
     rgb.reserve(3 * ids.size());
     for (const std::uint32_t id : ids) {

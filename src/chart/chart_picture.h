@@ -14,6 +14,6 @@ std::vector<std::uint32_t> chart_ids(const Scene& scene, const ChartSet& charts,
                                      std::uint32_t page);
 
 // A colour per texel, 3 bytes each: black where there is no chart, else a bright one by its id.
-std::vector<std::uint8_t> colour_ids(const std::vector<std::uint32_t>& ids);
+std::vector<std::uint8_t> color_ids(const std::vector<std::uint32_t>& ids);
 
 }  // namespace lumel
