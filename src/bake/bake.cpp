@@ -110,7 +110,7 @@ Result<Atlas> make_atlas_within_memory(const Scene& scene, const WorldGeometry& 
     LUMEL_TRY(Atlas atlas, make_atlas(scene, geometry, charts, options, context));
     report.predicted_memory_bytes = fixed + largest_page_memory(atlas);
     if (max_memory != 0 && report.predicted_memory_bytes > max_memory) {
-        const std::string remedy = one_page ? "a single page cannot be split: lower --resolution or use --uv1 ignore"
+        const std::string remedy = one_page ? "raise --max-memory, or lower --resolution: a single page cannot be split"
                                             : "raise --max-memory or lower --texels-per-metre";
         return Error{ErrorCode::out_of_memory,
                      "this bake needs about " + megabytes(report.predicted_memory_bytes) + " but --max-memory allows " +
@@ -202,8 +202,9 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
                                                   options.max_memory_bytes, report, context));
     }
     if (atlas.pages.empty())
-        return Error{ErrorCode::invalid_input, "no surface of the scene gets lightmap texels", scene.source,
-                     "every node is of another class than lightmap: see lumel info"};
+        return Error{
+            ErrorCode::invalid_input, "no surface of the scene gets lightmap texels", scene.source,
+            "every node is of another class than lightmap, or all its triangles are without area: see lumel info"};
     if (sink.layout) LUMEL_TRY_STATUS(sink.layout(geometry, charts, atlas));
 
     std::unique_ptr<Tracer> tracer;

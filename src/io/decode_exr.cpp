@@ -61,7 +61,8 @@ std::vector<std::string> channel_names(const Imf::Header& header) {
 
 Status check_channel(const Imf::Header& header, const std::string& name, const std::string& where) {
     const Imf::Channel* channel = header.channels().findChannel(name);
-    if (!channel) return Error{ErrorCode::invalid_input, "has no channel '" + name + "'", where, {}};
+    if (!channel)
+        return Error{ErrorCode::invalid_input, "has no channel '" + name + "'", where, "give a master of a bake"};
     if (channel->xSampling != 1 || channel->ySampling != 1)
         return Error{ErrorCode::unsupported, "channel '" + name + "' is subsampled", where,
                      "save it at full resolution"};
@@ -132,7 +133,8 @@ Result<Image> decode_exr(std::span<const std::byte> bytes, const std::string& wh
     return with_exr(bytes, where, [&](Imf::InputFile& file) -> Result<Image> {
         const std::vector<std::string> names = colour_channels(file.header());
         if (names.empty())
-            return Error{ErrorCode::unsupported, "has neither R, G and B nor a single channel", where, {}};
+            return Error{ErrorCode::unsupported, "has neither R, G and B nor a single channel", where,
+                         "save it as RGB"};
         for (const std::string& name : names) LUMEL_TRY_STATUS(check_channel(file.header(), name, where));
         LUMEL_TRY(const Size size, checked_size(file.header(), names.size(), bytes.size(), where));
         Image image(size.width, size.height, static_cast<std::uint32_t>(names.size()));

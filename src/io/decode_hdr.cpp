@@ -62,10 +62,13 @@ private:
     Status read_resolution(std::string_view text) {
         bottom_up_ = text.starts_with("+Y ");
         if (!bottom_up_ && !text.starts_with("-Y "))
-            return Error{ErrorCode::unsupported, "rows of the image are not horizontal", where_, {}};
+            return Error{ErrorCode::unsupported, "rows of the image are not horizontal", where_,
+                         "save it with the resolution line -Y h +X w"};
         text.remove_prefix(3);
         if (!number(text, height_)) return damaged("the image size cannot be read");
-        if (!text.starts_with(" +X ")) return Error{ErrorCode::unsupported, "the image is mirrored", where_, {}};
+        if (!text.starts_with(" +X "))
+            return Error{ErrorCode::unsupported, "the image is mirrored", where_,
+                         "save it with the resolution line -Y h +X w"};
         text.remove_prefix(4);
         if (!number(text, width_)) return damaged("the image size cannot be read");
         return success();

@@ -106,7 +106,8 @@ Status write_exr(const std::filesystem::path& path, std::uint32_t width, std::ui
         }
     } catch (const std::exception& e) {
         if (file.ok())
-            return Error{ErrorCode::io, std::string("writing OpenEXR failed: ") + e.what(), path.string(), {}};
+            return Error{ErrorCode::io, std::string("writing OpenEXR failed: ") + e.what(), path.string(),
+                         "check the disk, or choose another folder with -o"};
     }
     return file.commit();
 }

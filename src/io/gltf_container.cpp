@@ -226,7 +226,7 @@ void GltfDocumentDeleter::operator()(GltfDocument* document) const { delete docu
 
 Result<GltfDocumentPtr> read_document(std::vector<std::byte> bytes, const std::filesystem::path& path,
                                       const std::string& where) {
-    if (bytes.empty()) return invalid(where, "is empty");
+    if (bytes.empty()) return invalid(where, "is empty", "export the scene again");
     Chunks chunks{{reinterpret_cast<const char*>(bytes.data()), bytes.size()}, {}, false};
     if (bytes.size() >= 4 && read_u32(bytes, 0) == kGlbMagic) {
         LUMEL_TRY(chunks, split_glb(bytes, where));
@@ -235,7 +235,12 @@ Result<GltfDocumentPtr> read_document(std::vector<std::byte> bytes, const std::f
     document->path = path;
     document->where = where;
     document->file_bytes = bytes.size();
-    LUMEL_TRY(document->root, parse_json(chunks.json, where));
+    Result<Json> root = parse_json(chunks.json, where);
+    if (!root.ok()) {
+        const bool json_like = chunks.json.find('{') != std::string_view::npos;
+        return json_like ? root.error() : unsupported(where, "is neither a .glb nor a .gltf", "give a glTF 2.0 scene");
+    }
+    document->root = std::move(root).value();
     LUMEL_TRY_STATUS(DocumentReader(*document, chunks).read());
     return document;
 }

@@ -30,6 +30,7 @@ Result<AccessorView> open_attribute(const GltfDocument& document, const Json& at
                                     std::uint32_t least, std::uint32_t most, const std::string& where) {
     LUMEL_TRY(const std::optional<std::uint64_t> accessor, optional_count(attributes, key, where));
     if (!accessor) return AccessorView{};
+    LUMEL_TRY_STATUS(element_exists(document.root, "accessors", *accessor, where));
     LUMEL_TRY(AccessorView view, open_accessor(document, *accessor));
     if (view.components < least || view.components > most || view.component == Component::uint32)
         return invalid(
@@ -65,6 +66,7 @@ Result<std::vector<std::uint32_t>> read_indices(const GltfDocument& document, co
         std::iota(indices.begin(), indices.end(), 0u);
         return indices;
     }
+    LUMEL_TRY_STATUS(element_exists(document.root, "accessors", *accessor, where));
     LUMEL_TRY(const AccessorView view, open_accessor(document, *accessor));
     if (view.components != 1 || (view.component != Component::uint8 && view.component != Component::uint16 &&
                                  view.component != Component::uint32))

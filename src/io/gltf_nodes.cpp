@@ -152,6 +152,7 @@ private:
     Status read_parts(const Json& json, SceneNode& node) {
         const std::string at = where(node.index);
         LUMEL_TRY(node.mesh, optional_count(json, "mesh", at));
+        if (node.mesh) LUMEL_TRY_STATUS(element_exists(document_.root, "meshes", *node.mesh, at));
         LUMEL_TRY(node.camera, optional_count(json, "camera", at));
         node.skinned = find(json, "skin") != nullptr;
         if (const Json* light = find_extension(json, "KHR_lights_punctual")) {

@@ -167,6 +167,11 @@ Result<const Json*> element(const Json& object, const char* key, std::uint64_t i
     return value;
 }
 
+Status element_exists(const Json& object, const char* key, std::uint64_t index, const std::string& where) {
+    LUMEL_TRY([[maybe_unused]] const Json* found, element(object, key, index, where));
+    return success();
+}
+
 std::size_t array_size(const Json& object, const char* key) {
     const Json* array = find(object, key);
     return array && array->is_array() ? array->size() : 0;

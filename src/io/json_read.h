@@ -45,6 +45,8 @@ Result<const Json*> optional_object(const Json& object, const char* key, const s
 
 // Element `index` of the array `key`, which must be an object: "meshes[7] does not exist".
 Result<const Json*> element(const Json& object, const char* key, std::uint64_t index, const std::string& where);
+// The same where only its presence matters: an error that names who refers to it.
+Status element_exists(const Json& object, const char* key, std::uint64_t index, const std::string& where);
 // Length of the array `key`, 0 where absent or of another type.
 std::size_t array_size(const Json& object, const char* key);
 

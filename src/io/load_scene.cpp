@@ -190,22 +190,33 @@ private:
     std::map<std::uint64_t, std::uint32_t> mesh_index_;  // glTF mesh -> Scene mesh
 };
 
+// Where a message has no better advice: what a document says wrongly is mended where it was written.
+Error with_remedy(Error error) {
+    if (!error.remedy.empty() || error.code == ErrorCode::cancelled) return error;
+    const bool in_sidecar = error.where.find(".lumel.json") != std::string::npos;
+    error.remedy = in_sidecar ? "mend the sidecar: docs/sidecar.md says what it may hold"
+                              : "export the scene again; if it stays, the exporter writes bad glTF";
+    return error;
+}
+
 Result<std::optional<Sidecar>> read_sidecar(const std::filesystem::path& scene) {
     const std::filesystem::path path = sidecar_path(scene);
     std::error_code ignored;
     if (!std::filesystem::exists(path, ignored)) return std::optional<Sidecar>{};
     LUMEL_TRY(const std::vector<std::byte> bytes, read_file(path, kMaxSidecarFile));
-    LUMEL_TRY(Sidecar sidecar,
-              parse_sidecar({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path.string()));
-    return std::optional<Sidecar>(std::move(sidecar));
+    Result<Sidecar> sidecar = parse_sidecar({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path.string());
+    if (!sidecar.ok()) return with_remedy(sidecar.error());
+    return std::optional<Sidecar>(std::move(sidecar).value());
 }
 
 Result<LoadedScene> load(std::vector<std::byte> bytes, const std::filesystem::path& path, const std::string& where,
                          const std::optional<Sidecar>& sidecar, Context& context) {
-    LUMEL_TRY(GltfDocumentPtr document, read_document(std::move(bytes), path, where));
-    LUMEL_TRY(Scene scene, SceneReader(*document, sidecar, context).read());
+    Result<GltfDocumentPtr> document = read_document(std::move(bytes), path, where);
+    if (!document.ok()) return with_remedy(document.error());
+    Result<Scene> scene = SceneReader(**document, sidecar, context).read();
+    if (!scene.ok()) return with_remedy(scene.error());
     context.report("load", 1.0);
-    return LoadedScene{std::move(scene), std::move(document)};
+    return LoadedScene{std::move(scene).value(), std::move(document).value()};
 }
 
 }  // namespace

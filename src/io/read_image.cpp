@@ -48,16 +48,17 @@ ImageFormat image_format(std::span<const std::byte> bytes) {
 Status check_image_size(std::uint64_t width, std::uint64_t height, std::uint64_t channels, std::uint32_t max_edge,
                         std::size_t file_bytes, const std::string& where) {
     const std::string size = std::to_string(width) + " x " + std::to_string(height) + " pixels";
-    if (width == 0 || height == 0) return Error{ErrorCode::invalid_input, "has no pixels", where, {}};
+    if (width == 0 || height == 0) return Error{ErrorCode::invalid_input, "has no pixels", where, "save it again"};
     if (width > max_edge || height > max_edge)
         return Error{
             ErrorCode::unsupported,
             "has " + size + "; at most " + std::to_string(max_edge) + " x " + std::to_string(max_edge) + " are read",
             where, "make it smaller"};
     if (width * height * channels > (std::uint64_t{64} << 20) + 128 * std::uint64_t{file_bytes})
-        return Error{ErrorCode::invalid_input,
-                     "says it has " + size + ", which its " + std::to_string(file_bytes) + " bytes cannot hold", where,
-                     "the file is damaged"};
+        return Error{
+            ErrorCode::unsupported,
+            "says it has " + size + ", more than are read from a file of " + std::to_string(file_bytes) + " bytes",
+            where, "make the image smaller, or save it again if the file is damaged"};
     return success();
 }
 

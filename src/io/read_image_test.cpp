@@ -80,7 +80,7 @@ TEST(DecodeHdr, RefusesDamage) {
     EXPECT_NE(error_of(hdr("-Y 1 +X 8", std::string("\x02\x02\x00\x08\x00\x80", 6))).find("leaves its row"),
               std::string::npos);
     EXPECT_NE(error_of(hdr("-Y 99999 +X 8", "")).find("16384"), std::string::npos);
-    EXPECT_NE(error_of(hdr("-Y 16384 +X 16384", "")).find("cannot hold"), std::string::npos);
+    EXPECT_NE(error_of(hdr("-Y 16384 +X 16384", "")).find("more than are read"), std::string::npos);
     EXPECT_NE(error_of(hdr("-Y 0 +X 8", "")).find("no pixels"), std::string::npos);
     EXPECT_NE(error_of(hdr("+X 8 -Y 8", "")).find("horizontal"), std::string::npos);
     EXPECT_NE(error_of(hdr("-Y 8 -X 8", "")).find("mirrored"), std::string::npos);
@@ -106,7 +106,7 @@ TEST(DecodePfm, RefusesDamage) {
     EXPECT_NE(error_of("PF\n2 2\n-1.0\n1234").find("ends within"), std::string::npos);
     EXPECT_NE(error_of("PF\n2 x\n-1.0\n").find("header"), std::string::npos);
     EXPECT_NE(error_of("PF\n2 2").find("header"), std::string::npos);
-    EXPECT_NE(error_of("PF\n16000 16000\n-1.0\n").find("cannot hold"), std::string::npos);
+    EXPECT_NE(error_of("PF\n16000 16000\n-1.0\n").find("more than are read"), std::string::npos);
 }
 
 TEST(DecodeImage, NamesWhatItKnows) {
