@@ -10,6 +10,7 @@
 namespace lumel::cli {
 
 enum Exit : int { kDone = 0, kFailed = 1, kUsage = 2 };
+inline constexpr const char* kCancelledText = "lumel: error: cancelled, nothing was written";
 
 // Prints "lumel: error: ..." and returns the exit code of the error.
 int fail(const Error& error);
@@ -22,6 +23,10 @@ Run add_render(CLI::App& app);
 Run add_compare(CLI::App& app);
 
 // Values that several commands parse -------------------------------------------------------------------------------
+
+// Checks of a number; unlike CLI11's own they refuse "nan".
+CLI::Validator between(double low, double high);
+CLI::Validator not_negative();
 
 // "1,2,3" -> Vec3. Error: usage.
 Result<Vec3> parse_vec3(const std::string& text, const std::string& option);
@@ -46,9 +51,7 @@ private:
     BakeOptions values_;
 };
 
-// Loads the scene, then the sky map that the options name, and applies sky and sun. The scene's own sun angle defaults
-// etc. stay as the file says.
-class RunContext;
+class Interrupt;
 
 // How progress is shown.
 enum class ProgressStyle { automatic, plain, json, none };
@@ -62,6 +65,7 @@ public:
     RunContext(const RunContext&) = delete;
     RunContext& operator=(const RunContext&) = delete;
     [[nodiscard]] Context& get() { return context_; }
+    [[nodiscard]] Interrupt& interrupt() { return *interrupt_; }
     // Ends the progress line, prints warnings.
     void finish();
 
@@ -69,6 +73,7 @@ private:
     class Meter;
     Context context_;
     std::unique_ptr<Meter> meter_;
+    std::unique_ptr<Interrupt> interrupt_;
 };
 
 }  // namespace lumel::cli

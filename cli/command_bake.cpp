@@ -5,6 +5,7 @@
 #include "base/try.h"
 #include "command.h"
 #include "image/tonemap.h"
+#include "interrupt.h"
 #include "io/bake_writer.h"
 #include "io/baked.h"
 #include "io/image_io.h"
@@ -103,12 +104,21 @@ void print_summary(const BakeReport& report, const std::string& folder) {
         report.tracer.c_str(), report.estimated_nrmse, static_cast<unsigned long long>(report.peak_memory_bytes >> 20));
 }
 
+// While other threads still write into it.
+void remove_folder(const std::filesystem::path& folder) {
+    constexpr int kAttempts = 20;
+    std::error_code error;
+    for (int attempt = 0; attempt < kAttempts && std::filesystem::exists(folder, error); ++attempt)
+        std::filesystem::remove_all(folder, error);
+}
+
 Status run(const Options& options) {
     LUMEL_TRY(BakeOptions bake_options, read_options(options));
     RunContext run_context(bake_options.threads, options.progress);
     Context& context = run_context.get();
     LUMEL_TRY(const LoadedScene loaded, load_lit_scene(options.scene, bake_options, context));
     LUMEL_TRY(BakeWriter writer, BakeWriter::create(options.output, loaded, bake_options, context));
+    run_context.interrupt().set_cleaner([folder = writer.folder()] { remove_folder(folder); });
     BakeSink sink;
     sink.layout = [&](const WorldGeometry& geometry, const ChartSet& charts, const Atlas& atlas) {
         return writer.layout(geometry, charts, atlas);
@@ -119,6 +129,8 @@ Status run(const Options& options) {
     LUMEL_TRY_STATUS(write_views(writer, loaded.scene, bake_options, {kViewWidth, kViewHeight, options.view_samples},
                                  options.views, context));
     LUMEL_TRY_STATUS(writer.finish(report, context.diagnostics));
+    if (!run_context.interrupt().begin_commit()) return Error{ErrorCode::cancelled, "the bake was cancelled", {}, {}};
+    LUMEL_TRY_STATUS(writer.commit());
     run_context.finish();
     print_summary(report, options.output);
     return success();
@@ -141,7 +153,7 @@ Run add_bake(CLI::App& app) {
 
     const std::string texels = "Texels";
     app.add_option("--texels-per-metre", values.texels_per_metre, "Density (0: from the preset's texel budget)")
-        ->check(CLI::Range(0.0, 1e6))
+        ->check(between(0.0, 1e6))
         ->group(texels);
     app.add_option("--resolution", options->resolution, "WxH of the one page")->group(texels);
     app.add_option("--max-page", values.max_page, "Largest page edge in texels")
@@ -161,7 +173,7 @@ Run add_bake(CLI::App& app) {
     const std::string transport = "Transport";
     app.add_option("--ao-distance", values.ao_distance,
                    "Reach of ambient occlusion in metres (0: a tenth of the diagonal)")
-        ->check(CLI::NonNegativeNumber)
+        ->check(not_negative())
         ->group(transport);
     app.add_option(
            "--stop", options->stop,
@@ -169,10 +181,10 @@ Run add_bake(CLI::App& app) {
         ->check(CLI::IsMember({"fixed", "flux"}))
         ->group(transport);
     app.add_option("--error", values.error, "Relative error at which --stop flux stops")
-        ->check(CLI::Range(1e-6, 10.0))
+        ->check(between(1e-6, 10.0))
         ->group(transport);
     app.add_option("--confidence", values.confidence, "Confidence of --error")
-        ->check(CLI::Range(0.5, 0.9999))
+        ->check(between(0.5, 0.9999))
         ->group(transport);
     app.add_option("--max-memory", options->max_memory, "Ceiling such as 4G; pages shrink to fit it");
     options->light.declare(app);

@@ -41,14 +41,14 @@ Result<ImageMetrics> measure(const Options& options) {
         LUMEL_TRY(const Image mask_image, read_image(options.mask));
         if (mask_image.width != image.width || mask_image.height != image.height)
             return Error{ErrorCode::invalid_input,
-                         "the mask is " + size(mask_image) + " but the images are " + size(image),
-                         options.mask,
-                         {}};
+                         "the mask is " + size(mask_image) + " but the images are " + size(image), options.mask,
+                         "a mask must be of their size"};
         mask = mask_from_image(mask_image);
     }
     ImageMetrics metrics = compare_images(first_channels(image, channels), first_channels(reference, channels), mask);
     if (metrics.texels == 0)
-        return Error{ErrorCode::invalid_input, "the mask leaves no texel to compare", options.mask, {}};
+        return Error{ErrorCode::invalid_input, "the mask leaves no texel to compare", options.mask,
+                     "texels count where the mask is white"};
     return metrics;
 }
 
@@ -101,7 +101,7 @@ Run add_compare(CLI::App& app) {
     app.add_option("B", options->reference, "Reference image")->required();
     app.add_option("--mask", options->mask, "Compare only where this image is white");
     app.add_option("--metric", options->metric, "What --max-error looks at")->check(CLI::IsMember({"nrmse", "relmse"}));
-    app.add_option("--max-error", options->max_error, "Exit with 1 above this error")->check(CLI::NonNegativeNumber);
+    app.add_option("--max-error", options->max_error, "Exit with 1 above this error")->check(not_negative());
     app.add_flag("--json", options->json, "Figures as JSON on standard output");
     return [options] {
         const Result<ImageMetrics> metrics = measure(*options);

@@ -8,6 +8,8 @@
 #include "base/try.h"
 #include "command.h"
 #include "image/tonemap.h"
+#include "interrupt.h"
+#include "io/atomic_file.h"
 #include "io/baked.h"
 #include "io/image_io.h"
 #include "load.h"
@@ -36,8 +38,12 @@ Result<Camera> parse_camera(const std::string& text) {
     char* end = nullptr;
     const float fov = fov_text.empty() ? 60.0f : std::strtof(fov_text.c_str(), &end);
     if ((end && *end) || !(fov > 0.1f && fov < 179.0f))
-        return Error{
-            ErrorCode::usage, "--camera: the vertical field of view must lie between 0.1 and 179 degrees", {}, {}};
+        return Error{ErrorCode::usage,
+                     "--camera: '" + fov_text + "' is not a vertical field of view between 0.1 and 179 degrees",
+                     {},
+                     "for example '0,1.7,4;0,1,0;60'"};
+    if (!(length(target - eye) > 0.0f))
+        return Error{ErrorCode::usage, "--camera: eye and target are the same point", {}, "move one of them"};
     return look_at(eye, target, fov * kRadians);
 }
 
@@ -58,25 +64,37 @@ Result<Camera> find_camera(const std::string& text, const Transport& transport, 
                  "known: " + known + ", or eye;target;vfov_degrees such as '0,1.7,4;0,1,0;60'"};
 }
 
+// Before the work, not after it.
+Status check_output(const std::filesystem::path& path) {
+    const std::string extension = path.extension().string();
+    if (extension != ".png" && extension != ".exr" && extension != ".hdr" && extension != ".pfm")
+        return Error{ErrorCode::usage, "-o: unknown picture format '" + extension + "'", path.string(),
+                     "use .png, .exr, .hdr or .pfm"};
+    std::error_code ignored;
+    if (path.has_parent_path() && !std::filesystem::is_directory(path.parent_path(), ignored))
+        return Error{ErrorCode::io, "its folder does not exist", path.string(), "create it, or choose another with -o"};
+    if (std::filesystem::is_directory(path, ignored))
+        return Error{ErrorCode::io, "is a folder", path.string(), "give the name of a picture with -o"};
+    return success();
+}
+
 Status write_picture(const std::string& path, const Image& image, double exposure) {
     const std::string extension = std::filesystem::path(path).extension().string();
     if (extension == ".exr") return write_exr(path, image, ExrType::full);
     if (extension == ".hdr") return write_hdr(path, image);
     if (extension == ".pfm") return write_pfm(path, image);
-    if (extension == ".png") {
-        const float factor = exposure > 0.0 ? static_cast<float>(exposure) : auto_exposure(image);
-        return write_png(path, image.width, image.height, 3, tonemap(image, factor));
-    }
-    return Error{ErrorCode::usage, "-o: unknown picture format '" + extension + "'", path,
-                 "use .png, .exr, .hdr or .pfm"};
+    const float factor = exposure > 0.0 ? static_cast<float>(exposure) : auto_exposure(image);
+    return write_png(path, image.width, image.height, 3, tonemap(image, factor));
 }
 
 Status run(const Options& options) {
     BakeOptions light;
     LUMEL_TRY_STATUS(options.light.read(light));
     LUMEL_TRY(const Size size, parse_size(options.resolution, "--resolution"));
+    LUMEL_TRY_STATUS(check_output(options.output));
     RunContext run_context(light.threads, options.progress);
     Context& context = run_context.get();
+    run_context.interrupt().set_cleaner([&options] { remove_temporaries(options.output); });
     LUMEL_TRY(const LoadedScene loaded, load_lit_scene(options.scene, light, context));
     const Scene& scene = loaded.scene;
     LUMEL_TRY(const WorldGeometry geometry, flatten(scene, context));
@@ -122,7 +140,7 @@ Run add_render(CLI::App& app) {
     app.add_option("--camera", options->camera, "Name of a camera, 'view K', or eye;target;vfov_degrees");
     app.add_option("--baked", options->baked, "Output folder of a bake of this scene: light the view by it");
     app.add_option("--resolution", options->resolution, "Width x height in pixels");
-    app.add_option("--exposure", options->exposure, "Factor for .png; 0: automatic")->check(CLI::NonNegativeNumber);
+    app.add_option("--exposure", options->exposure, "Factor for .png; 0: automatic")->check(not_negative());
     options->light.declare(app);
     declare_progress(app, options->progress);
     return [options] {

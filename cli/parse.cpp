@@ -1,5 +1,7 @@
 #include <charconv>
 #include <cmath>
+#include <filesystem>
+#include <limits>
 #include <sstream>
 
 #include "base/try.h"
@@ -13,6 +15,24 @@ Error usage(const std::string& option, const std::string& text, const std::strin
 }
 
 }  // namespace
+
+CLI::Validator between(double low, double high) {
+    std::ostringstream name;
+    name.imbue(std::locale::classic());
+    if (high < std::numeric_limits<double>::max())
+        name << "in [" << low << " - " << high << "]";
+    else
+        name << "at least " << low;
+    const std::string range = name.str();
+    return {[low, high, range](std::string& text) {
+                double value = 0.0;
+                const bool number = CLI::detail::lexical_cast(text, value);
+                return number && value >= low && value <= high ? std::string{} : "'" + text + "' is not " + range;
+            },
+            range};
+}
+
+CLI::Validator not_negative() { return between(0.0, std::numeric_limits<double>::max()); }
 
 Result<Vec3> parse_vec3(const std::string& text, const std::string& option) {
     Vec3 out;
@@ -60,31 +80,31 @@ void LightOptions::declare(CLI::App& app) {
     const std::string group = "Light";
     app.add_option("--sky", sky_, "Sky: radiance R,G,B, or an equirectangular .hdr or .exr file")->group(group);
     app.add_option("--sky-intensity", values_.sky.intensity, "Nits per unit of --sky")
-        ->check(CLI::NonNegativeNumber)
+        ->check(not_negative())
         ->group(group);
     app.add_option("--sky-rotation", values_.sky.rotation_degrees, "Degrees about +Y")
-        ->check(CLI::Range(-360.0, 360.0))
+        ->check(between(-360.0, 360.0))
         ->group(group);
     app.add_option("--sky-blur", values_.sky.blur_degrees,
                    "Blur the sky map, keeping its energy: half width in degrees")
-        ->check(CLI::Range(0.0, 90.0))
+        ->check(between(0.0, 90.0))
         ->group(group);
     app.add_flag("--sky-extract-sun", values_.sky.extract_sun, "Find the sun's disc in the map and make it a light")
         ->group(group);
     app.add_option("--sun-direction", sun_direction_, "X,Y,Z: the way the sun's light travels")->group(group);
     app.add_option("--sun-illuminance", values_.sun.illuminance, "Lux on a plane facing the sun (0: 100000)")
-        ->check(CLI::NonNegativeNumber)
+        ->check(not_negative())
         ->group(group);
     app.add_option("--sun-colour,--sun-color", sun_color_, "R,G,B, times the illuminance")->group(group);
     app.add_option("--sun-angle", values_.sun.angle_degrees, "The sun's diameter in degrees")
-        ->check(CLI::Range(0.0, 90.0))
+        ->check(between(0.0, 90.0))
         ->group(group);
     app.add_option("--include", include_, "Layers that the files sum: some of direct,sky,indirect")->group(group);
     app.add_option("--direct-scale", values_.direct_scale, "Times direct and sky light")
-        ->check(CLI::NonNegativeNumber)
+        ->check(not_negative())
         ->group(group);
     app.add_option("--indirect-scale", values_.indirect_scale, "Times bounced light")
-        ->check(CLI::NonNegativeNumber)
+        ->check(not_negative())
         ->group(group);
 
     const std::string transport = "Transport";
@@ -115,6 +135,9 @@ Status LightOptions::read(BakeOptions& out) const {
             if (color->x < 0 || color->y < 0 || color->z < 0) return usage("--sky", sky_, "a radiance of zero or more");
             out.sky.color = *color;
         } else {
+            std::error_code ignored;
+            if (sky_.find(',') != std::string::npos && !std::filesystem::exists(sky_, ignored))
+                return usage("--sky", sky_, "three numbers such as 0.7,0.9,1.3, nor the name of a file");
             out.sky.file = sky_;
         }
     }
@@ -123,7 +146,8 @@ Status LightOptions::read(BakeOptions& out) const {
         if (!(length(direction) > 1e-12f)) return usage("--sun-direction", sun_direction_, "a direction");
         out.sun.direction = normalize(direction);
     } else if (out.sun.illuminance > 0.0) {
-        return Error{ErrorCode::usage, "--sun-illuminance needs --sun-direction", {}, {}};
+        return Error{
+            ErrorCode::usage, "--sun-illuminance needs --sun-direction", {}, "for example --sun-direction 0.3,-1,0.2"};
     }
     LUMEL_TRY(out.sun.color, parse_vec3(sun_color_, "--sun-colour"));
     if (out.sun.color.x < 0 || out.sun.color.y < 0 || out.sun.color.z < 0)
@@ -141,6 +165,8 @@ Status LightOptions::read(BakeOptions& out) const {
         else
             return usage("--include", layer, "one of direct, sky, indirect");
     }
+    if (!out.include.direct && !out.include.sky && !out.include.indirect)
+        return usage("--include", include_, "some of direct, sky, indirect");
     return success();
 }
 

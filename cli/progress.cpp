@@ -1,5 +1,4 @@
 // A progress line with rate and time left on a terminal, plain lines elsewhere, JSON lines on request.
-#include <signal.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -9,16 +8,10 @@
 #include <string>
 
 #include "command.h"
+#include "interrupt.h"
 
 namespace lumel::cli {
 namespace {
-
-// The one piece of state that a signal handler can reach.
-std::atomic<Context*> g_interrupted_context{nullptr};
-
-extern "C" void on_interrupt(int) {
-    if (Context* context = g_interrupted_context.load()) context->request_cancel();
-}
 
 std::string duration(double seconds) {
     char text[32];
@@ -31,6 +24,10 @@ std::string duration(double seconds) {
         std::snprintf(text, sizeof text, "%d h %02d min", static_cast<int>(seconds) / 3600,
                       static_cast<int>(seconds) / 60 % 60);
     return text;
+}
+
+std::string left_text(double fraction, double seconds) {
+    return fraction > 0.0 ? duration(seconds) + " left" : "time left unknown";
 }
 
 std::string rate_text(std::uint64_t rays, double mega_per_second) {
@@ -56,7 +53,8 @@ public:
             end_line();
             stage_ = progress.stage;
             start_ = now;
-            shown_ = {};
+            // A bar appears at once, a line only where the stage takes long.
+            shown_ = style_ == ProgressStyle::plain ? now : Clock::time_point{};
         }
         const double elapsed = std::chrono::duration<double>(now - start_).count();
         const double every = style_ == ProgressStyle::plain ? 5.0 : 0.1;
@@ -79,7 +77,7 @@ public:
                 if (done && elapsed < 0.5) break;
                 std::fprintf(stderr, "%s: %.0f %%, %s%s%s\n", stage_.c_str(), 100.0 * progress.fraction,
                              duration(elapsed).c_str(), rate_text(progress.rays, rate).c_str(),
-                             done ? "" : (", " + duration(left) + " left").c_str());
+                             done ? "" : (", " + left_text(progress.fraction, left)).c_str());
                 break;
             case ProgressStyle::automatic: bar(progress, elapsed, left, rate); break;
         }
@@ -100,7 +98,7 @@ private:
         cells.resize(kCells, '.');
         std::fprintf(stderr, "\r\033[K%-12s [%s] %3.0f %%%s, %s", stage_.c_str(), cells.c_str(),
                      100.0 * progress.fraction, rate_text(progress.rays, rate).c_str(),
-                     progress.fraction >= 1.0 ? duration(elapsed).c_str() : (duration(left) + " left").c_str());
+                     progress.fraction >= 1.0 ? duration(elapsed).c_str() : left_text(progress.fraction, left).c_str());
         std::fflush(stderr);
         open_line_ = true;
     }
@@ -120,19 +118,10 @@ void declare_progress(CLI::App& app, std::string& style) {
 RunContext::RunContext(unsigned threads, const std::string& progress_style)
     : context_(threads), meter_(std::make_unique<Meter>(progress_style)) {
     context_.on_progress = [this](const Progress& progress) { meter_->show(progress); };
-    g_interrupted_context = &context_;
-    struct sigaction action {};
-    action.sa_handler = on_interrupt;
-    sigaction(SIGINT, &action, nullptr);
-    sigaction(SIGTERM, &action, nullptr);
+    interrupt_ = std::make_unique<Interrupt>(context_);
 }
 
-RunContext::~RunContext() {
-    meter_->end_line();
-    signal(SIGINT, SIG_DFL);
-    signal(SIGTERM, SIG_DFL);
-    g_interrupted_context = nullptr;
-}
+RunContext::~RunContext() { meter_->end_line(); }
 
 void RunContext::finish() {
     meter_->end_line();
@@ -146,6 +135,10 @@ void RunContext::finish() {
 }
 
 int fail(const Error& error) {
+    if (error.code == ErrorCode::cancelled) {
+        std::fprintf(stderr, "%s\n", kCancelledText);
+        return kFailed;
+    }
     std::fprintf(stderr, "lumel: error: %s\n", error.text().c_str());
     return error.code == ErrorCode::usage ? kUsage : kFailed;
 }

@@ -8,18 +8,23 @@
 #include <string>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 namespace lumel {
 namespace {
 
 namespace fs = std::filesystem;
 
+std::string temporary_prefix(const fs::path& path) {
+    std::string prefix = ".";
+    prefix += path.filename().string();
+    prefix += ".partial-" + std::to_string(::getpid()) + "-";
+    return prefix;
+}
+
 // Beside the target, so that rename() stays within one file system; hidden; `attempt` makes it unique.
 fs::path temporary_beside(const fs::path& path, unsigned attempt) {
-    std::string name = ".";
-    name += path.filename().string();
-    name += ".partial-" + std::to_string(::getpid()) + "-" + std::to_string(attempt);
-    return path.parent_path() / name;
+    return path.parent_path() / (temporary_prefix(path) + std::to_string(attempt));
 }
 
 std::string remedy_for(int error_number) {
@@ -41,6 +46,16 @@ std::string remedy_for(int error_number) {
 Error system_error(const char* doing, const fs::path& path, int error_number) {
     return Error{ErrorCode::io, std::string(doing) + " failed: " + std::generic_category().message(error_number),
                  path.string(), remedy_for(error_number)};
+}
+
+void remove_temporaries(const fs::path& path) {
+    const std::string prefix = temporary_prefix(path);
+    const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
+    std::error_code error;
+    std::vector<fs::path> found;
+    for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
+        if (at->path().filename().string().starts_with(prefix)) found.push_back(at->path());
+    for (const fs::path& file : found) fs::remove(file, error);
 }
 
 AtomicFile::AtomicFile(fs::path path) : path_(std::move(path)) {

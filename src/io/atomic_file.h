@@ -37,6 +37,9 @@ private:
     Status status_ = success();
 };
 
+// What AtomicFiles of this process for `path` have not renamed yet; for a process that is about to end itself.
+void remove_temporaries(const std::filesystem::path& path);
+
 // An io error with the system's own words and, for the common causes, what to do about it.
 Error system_error(const char* doing, const std::filesystem::path& path, int error_number);
 
