@@ -90,6 +90,9 @@ PathOptions path_options(const BakeOptions& options, const WorldGeometry& geomet
     out.ao_distance = options.ao_distance > 0.0 ? static_cast<float>(options.ao_distance) : 0.1f * diagonal;
     out.two_sided = options.two_sided;
     out.stop = options.stop;
+    const auto direct = static_cast<float>(options.direct_scale), indirect = static_cast<float>(options.indirect_scale);
+    out.layer_scale = {direct, direct, indirect};
+    out.included = {options.include.direct, options.include.sky, options.include.indirect};
     out.relative_error_of_mean = options.error / normal_quantile(0.5 + 0.5 * options.confidence);
     return out;
 }
@@ -125,14 +128,14 @@ struct Totals {
     double variance = 0.0, irradiance[3] = {0, 0, 0};
     std::uint64_t texels = 0;
 
-    void add(const Lightmap& map) {
+    void add(const Lightmap& map, const std::array<bool, kLayerCount>& included) {
         for (std::size_t i = 0; i < map.texels.size(); ++i) {
             if (map.coverage[i] != Coverage::baked) continue;
             ++texels;
             for (std::size_t c = 0; c < 3; ++c) {
                 variance += static_cast<double>(map.texels.variance[i][c]);
-                for (const LayerMoments& layer : map.texels.layers[i])
-                    irradiance[c] += static_cast<double>(layer.irradiance[c]);
+                for (std::size_t l = 0; l < kLayerCount; ++l)
+                    if (included[l]) irradiance[c] += static_cast<double>(map.texels.layers[i][l].irradiance[c]);
             }
         }
     }
@@ -162,17 +165,6 @@ PageReport page_report(const Lightmap& map, const TexelBuffer& buffer) {
     page.coverage =
         static_cast<double>(page.texels - page.invalid) / static_cast<double>(std::uint64_t{page.width} * page.height);
     return page;
-}
-
-void scale_layers(RadianceSums& sums, double direct, double indirect) {
-    if (direct == 1.0 && indirect == 1.0) return;
-    for (std::size_t i = 0; i < sums.size(); ++i)
-        for (std::size_t l = 0; l < kLayerCount; ++l) {
-            const bool bounced = l == static_cast<std::size_t>(Layer::indirect);
-            const float factor = static_cast<float>(bounced ? indirect : direct);
-            for (Vec3& coefficient : sums.layers[i][l].sh) coefficient *= factor;
-            sums.layers[i][l].irradiance *= factor;
-        }
 }
 
 }  // namespace
@@ -232,7 +224,6 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
             report.trace_wall_seconds += timer.seconds();
         }
         for (const std::uint32_t traced : sums.traced) report.samples += traced;
-        scale_layers(sums, options.direct_scale, options.indirect_scale);
         Lightmap map;
         if (options.denoise.value_or(preset_values(options.preset).denoise)) {
             const StageTimer timer(report, "denoise");
@@ -243,7 +234,7 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
             map = finish_page(texels, std::move(sums), std::move(surface), options.dilate);
         }
         report.pages.push_back(page_report(map, texels));
-        totals.add(map);
+        totals.add(map, path.included);
         texels = {};
         const StageTimer timer(report, "write");
         if (sink.page) LUMEL_TRY_STATUS(sink.page(map));

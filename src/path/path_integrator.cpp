@@ -209,7 +209,7 @@ void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w
         vertex.position = starts[lane].origin;
         vertex.normal = starts[lane].normal;
         vertex.face_normal = {};
-        vertex.triangle = starts[lane].triangle;
+        vertex.triangle = starts[lane].skip;
         vertex.direction = Frame(vertex.normal).to_world(local);
         vertex.direction_pdf = GatherHemisphere::pdf(local.z);
         w.first_direction[lane] = vertex.direction;
@@ -220,12 +220,12 @@ void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w
         ray = {};
         ray.origin = vertex.position;
         ray.direction = vertex.direction;
-        ray.skip = starts[lane].triangle;
+        ray.skip = starts[lane].skip;
         ray.alpha_key = alpha_key(starts[lane], kDirectionSalt);
     }
     transport_.tracer.closest(std::span(w.rays).first(count), std::span(w.hits).first(count));
 
-    // Void paths are known now and cost nothing more.
+    // Void paths end here.
     std::size_t alive = 0;
     for (std::uint32_t lane = 0; lane < count; ++lane) {
         const Hit& hit = w.hits[lane];
@@ -237,11 +237,10 @@ void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w
         }
     }
 
-    // Light that reaches the start from sampled directions.
+    // Light that reaches the start from sampled directions, of void paths too.
     {
         LightQueue<Workspace> queue(transport_, w);
-        for (std::size_t i = 0; i < alive; ++i) {
-            const std::uint32_t lane = w.lanes[i];
+        for (std::uint32_t lane = 0; lane < count; ++lane) {
             queue.sample_all(
                 lane, starts[lane], 0, false, [](float cosine) { return GatherHemisphere::pdf(cosine); },
                 [](float) {
@@ -364,7 +363,9 @@ void PathIntegrator::surface_starts(std::span<const SamplePoint> points, std::sp
         const Vec3 face_normal = geometry.geometric_normal(triangle) * side;
         out[i].normal = geometry.shading_normal(triangle, b1, b2) * side;
         out[i].origin = offset_origin(geometry, triangle, b1, b2, face_normal);
+        out[i].skip = triangle;
         if (!(geometry.triangles[triangle].flags & kCurved)) continue;
+        out[i].skip = kNone;  // directions below the facet meet it, else they would leave a hollow through its wall
         const Vec3 move =
             smooth_position(geometry, triangle, b1, b2, back_side[i] != 0) - geometry.position(triangle, b1, b2);
         const float distance = length(move);
@@ -389,7 +390,8 @@ namespace {
 // Sums of one texel: in single precision over one wavefront, and those in double, for millions of samples must add up.
 class TexelSink {
 public:
-    explicit TexelSink(float ao_distance) : ao_distance_(ao_distance) {}
+    explicit TexelSink(const PathOptions& options)
+        : ao_distance_(options.ao_distance), scale_(options.layer_scale), included_(options.included) {}
 
     void begin(std::span<const PathStart> starts, float sh_scale) {
         starts_ = starts;
@@ -403,15 +405,17 @@ public:
 
     void void_path(std::uint32_t lane) { void_[lane] = true; }
 
-    void light(std::uint32_t lane, Layer layer, Vec3 direction, Vec3 value) {
-        LayerSums<float>& sums = wavefront_[static_cast<std::size_t>(layer)];
+    void light(std::uint32_t lane, Layer of, Vec3 direction, Vec3 value) {
+        const auto layer = static_cast<std::size_t>(of);
+        LayerSums<float>& sums = wavefront_[layer];
+        value *= scale_[layer];
         const ShBasis basis = sh_basis(direction);
         for (std::size_t c = 0; c < 3; ++c)
             for (std::size_t i = 0; i < kShCoefficients; ++i) sums.sh[c][i] += basis[i] * value[c];
         const float cosine = std::max(0.0f, dot(direction, starts_[lane].normal));
         const Vec3 irradiance = value * (cosine * kInvPi);
         for (std::size_t c = 0; c < 3; ++c) sums.irradiance[c] += irradiance[c];
-        sample_[lane] += irradiance;
+        if (included_[layer]) sample_[lane] += irradiance;
     }
 
     void free_path(std::uint32_t lane, Vec3 direction, float pdf, float distance, bool sky) {
@@ -432,25 +436,16 @@ public:
             }
         for (std::size_t lane = 0; lane < starts_.size(); ++lane) {
             ++traced_;
-            if (void_[lane]) continue;
-            ++count_;
-            for (std::size_t c = 0; c < 3; ++c) {
-                const double x = static_cast<double>(sample_[lane][c]);
-                sum_[c] += x;
-                squares_[c] += x * x;
-            }
-            const double y = static_cast<double>(luminance(sample_[lane]));
-            luminance_sum_ += y;
-            luminance_squares_ += y * y;
+            if (!void_[lane]) ++count_;
+            for (std::size_t c = 0; c < 3; ++c) channels_[c].add(static_cast<double>(sample_[lane][c]), !void_[lane]);
+            luminance_.add(static_cast<double>(luminance(sample_[lane])), !void_[lane]);
         }
     }
 
     // Frostbite's rule on the texel's own luminance.
     [[nodiscard]] bool converged(double relative_error) const {
         if (count_ < 2) return false;
-        const double n = static_cast<double>(count_);
-        const double mean = luminance_sum_ / n;
-        return std::sqrt(variance_of_mean(luminance_sum_, luminance_squares_)) <= relative_error * mean;
+        return std::sqrt(luminance_.variance(count_, traced_)) <= relative_error * luminance_.mean(count_);
     }
 
     void store(RadianceSums& out, std::size_t index) const {
@@ -467,7 +462,7 @@ public:
             }
         }
         for (std::size_t c = 0; c < 3; ++c) {
-            out.variance[index][c] = static_cast<float>(variance_of_mean(sum_[c], squares_[c]));
+            out.variance[index][c] = static_cast<float>(channels_[c].variance(count_, traced_));
             out.bent_normal[index][c] = static_cast<float>(bent_[c] * inverse);
         }
         out.sky_visibility[index] = static_cast<float>(std::min(1.0, sky_visibility_ * inverse));
@@ -481,39 +476,63 @@ private:
         std::array<Number, 3> irradiance{};
     };
 
-    [[nodiscard]] double variance_of_mean(double sum, double squares) const {
-        if (count_ < 2) return 0.0;
-        const double n = static_cast<double>(count_);
-        return std::max(0.0, squares - sum * sum / n) / (n * (n - 1.0));
-    }
+    // Moments of samples x_i over all paths, of which those with v_i = 1 count: the mean is sum x / sum v.
+    class Moments {
+    public:
+        void add(double x, bool counts) {
+            sum_ += x;
+            squares_ += x * x;
+            if (counts) counted_ += x;
+        }
+        [[nodiscard]] double mean(std::uint32_t count) const { return sum_ / static_cast<double>(count); }
+        // Of that mean, by the residuals x - mean v (Cochran 1977, ch. 6); without void paths the familiar one.
+        [[nodiscard]] double variance(std::uint32_t count, std::uint32_t traced) const {
+            if (count < 2) return 0.0;
+            const double n = static_cast<double>(count), m = mean(count);
+            const double residuals = std::max(0.0, squares_ - 2.0 * m * counted_ + m * m * n);
+            return residuals / (n * n) * (static_cast<double>(traced) / static_cast<double>(traced - 1));
+        }
+
+    private:
+        double sum_ = 0.0, squares_ = 0.0, counted_ = 0.0;
+    };
 
     float ao_distance_;
+    std::array<float, kLayerCount> scale_;
+    std::array<bool, kLayerCount> included_;
     float sh_scale_ = 1.0f;
     std::span<const PathStart> starts_;
     std::array<Vec3, kWavefrontLanes> sample_{};
     std::array<bool, kWavefrontLanes> void_{};
     std::array<LayerSums<float>, kLayerCount> wavefront_{};
     std::array<LayerSums<double>, kLayerCount> layers_{};
-    std::array<double, 3> sum_{}, squares_{}, bent_{};
-    double luminance_sum_ = 0.0, luminance_squares_ = 0.0, sky_visibility_ = 0.0, open_ = 0.0;
+    std::array<Moments, 3> channels_{};
+    Moments luminance_;
+    std::array<double, 3> bent_{};
+    double sky_visibility_ = 0.0, open_ = 0.0;
     std::uint32_t count_ = 0, traced_ = 0;
 };
 
 // Only the irradiance of each path, for pictures.
 class IrradianceSink {
 public:
-    IrradianceSink(std::span<const PathStart> starts, std::span<Vec3> irradiance, std::span<std::uint8_t> valid)
-        : starts_(starts), irradiance_(irradiance), valid_(valid) {
+    IrradianceSink(const PathOptions& options, std::span<const PathStart> starts, std::span<Vec3> irradiance,
+                   std::span<std::uint8_t> valid)
+        : options_(options), starts_(starts), irradiance_(irradiance), valid_(valid) {
         std::fill(irradiance.begin(), irradiance.end(), Vec3{});
         std::fill(valid.begin(), valid.end(), std::uint8_t{1});
     }
     void void_path(std::uint32_t lane) { valid_[lane] = 0; }
     void free_path(std::uint32_t, Vec3, float, float, bool) {}
-    void light(std::uint32_t lane, Layer, Vec3 direction, Vec3 value) {
-        irradiance_[lane] += value * (std::max(0.0f, dot(direction, starts_[lane].normal)) * kInvPi);
+    void light(std::uint32_t lane, Layer of, Vec3 direction, Vec3 value) {
+        const auto layer = static_cast<std::size_t>(of);
+        if (!options_.included[layer]) return;
+        const float cosine = std::max(0.0f, dot(direction, starts_[lane].normal));
+        irradiance_[lane] += value * (options_.layer_scale[layer] * cosine * kInvPi);
     }
 
 private:
+    const PathOptions& options_;
     std::span<const PathStart> starts_;
     std::span<Vec3> irradiance_;
     std::span<std::uint8_t> valid_;
@@ -523,7 +542,7 @@ private:
 
 void PathIntegrator::gather_irradiance(std::span<const PathStart> starts, Workspace& workspace,
                                        std::span<Vec3> irradiance, std::span<std::uint8_t> valid) const {
-    IrradianceSink sink(starts, irradiance, valid);
+    IrradianceSink sink(options_, starts, irradiance, valid);
     trace_paths(starts, workspace, sink);
 }
 
@@ -542,7 +561,10 @@ void PathIntegrator::gather_texel(std::span<const SamplePoint> points, std::uint
         surface_starts(points, std::span(w.sides).first(n), w, w.back_surfaces);
     }
 
-    TexelSink sink(options_.ao_distance);
+    // Counts that do not fill a whole round of the points leave out others in each texel; blocks of a power of two keep
+    // the order's even spread.
+    const bool all_points = n == kSamplesPerTexel;
+    TexelSink sink(options_);
     const std::uint32_t tenth = (options_.samples + 9) / 10;
     std::uint32_t next_check = tenth;
     for (std::uint32_t base = 0; base < options_.samples; base += kWavefrontLanes) {
@@ -552,8 +574,9 @@ void PathIntegrator::gather_texel(std::span<const SamplePoint> points, std::uint
             const std::uint32_t sample = base + lane;
             // Both sides take turns in pairs, so that each side meets every sample point.
             const bool back = both_sides && ((sample ^ (sample / kWavefrontLanes)) & 1u) != 0;
-            const SurfaceStart& start = (back ? w.back_surfaces : w.surfaces)[sample % n];
-            w.starts[lane] = {start.origin, start.normal, key, sample, points[sample % n].triangle};
+            const std::size_t point = (all_points ? sample ^ key : sample + key) % n;
+            const SurfaceStart& start = (back ? w.back_surfaces : w.surfaces)[point];
+            w.starts[lane] = {start.origin, start.normal, key, sample, start.skip};
         }
         const auto starts = std::span<const PathStart>(w.starts).first(lanes);
         sink.begin(starts, both_sides ? 2.0f : 1.0f);

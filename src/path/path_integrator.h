@@ -3,9 +3,12 @@
 //
 // Which rays a texel sends (docs/conventions.md, "The hemisphere of a texel"): the upper hemisphere of the vertex
 // normal, with density (1/2 + cos)/(2 pi), from sample points spread over the texel. A path whose first ray meets the
-// back of a single-sided surface is void: it leaves the sums and the count, of every layer and moment alike.
+// back of a single-sided surface is void: what it would have met leaves the sums, and it leaves the count of all layers
+// and moments. Light that is sampled at its start (which another direction reaches) stays in the sums: both ways to
+// sample the same light have one normaliser.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -30,6 +33,9 @@ struct PathOptions {
     bool two_sided = false;
     StopRule stop = StopRule::fixed;
     double relative_error_of_mean = 0.0;  // StopRule::flux: error / z(confidence)
+    // Artist's factors of the layers, and which of them the total (its variance, pictures) sums.
+    std::array<float, kLayerCount> layer_scale{1, 1, 1};
+    std::array<bool, kLayerCount> included{true, true, true};
 };
 
 // What a path is traced through. Borrowed; all of it is const while paths run.
@@ -43,16 +49,17 @@ struct Transport {
 
 // Where a path starts: a point that looks out over the hemisphere of `normal`.
 struct PathStart {
-    Vec3 origin;                     // already lifted off its surface
-    Vec3 normal;                     // of the hemisphere: the vertex normal that the runtime shades with
-    std::uint32_t key = 0;           // point set (math/sampler.h)
-    std::uint32_t index = 0;         // sample in it
-    std::uint32_t triangle = kNone;  // that it lies on
+    Vec3 origin;                 // already lifted off its surface
+    Vec3 normal;                 // of the hemisphere: the vertex normal that the runtime shades with
+    std::uint32_t key = 0;       // point set (math/sampler.h)
+    std::uint32_t index = 0;     // sample in it
+    std::uint32_t skip = kNone;  // the triangle that it lies on, where no direction of the hemisphere is below it
 };
 
 // Origin and normal of a sample point: smooth position where it is reachable, else the offset flat point.
 struct SurfaceStart {
     Vec3 origin, normal;
+    std::uint32_t skip = kNone;  // PathStart::skip
 };
 
 class PathIntegrator {
@@ -73,8 +80,8 @@ public:
     void gather_texel(std::span<const SamplePoint> points, std::uint64_t id, Workspace& workspace, RadianceSums& out,
                       std::size_t index, const Context& context) const;
 
-    // Irradiance I about the start's normal of each path (at most kWavefrontLanes), all layers; void paths give zero
-    // and valid = 0. For pictures: `lumel render`.
+    // Irradiance I about the start's normal of each path (at most kWavefrontLanes), all included layers; void paths
+    // give valid = 0: divide the sum over all paths by the number of valid ones. For pictures: `lumel render`.
     void gather_irradiance(std::span<const PathStart> starts, Workspace& workspace, std::span<Vec3> irradiance,
                            std::span<std::uint8_t> valid) const;
 

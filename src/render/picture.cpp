@@ -120,13 +120,12 @@ private:
         if (n == 0) return;
         integrator_.surface_starts(std::span(points_).first(n), std::span(sides_).first(n), *workspace_, surface_);
         for (std::uint32_t k = 0; k < n; ++k)
-            starts_[k] = {surface_[k].origin, surface_[k].normal, key, base + lane_[k], points_[k].triangle};
+            starts_[k] = {surface_[k].origin, surface_[k].normal, key, base + lane_[k], surface_[k].skip};
         integrator_.gather_irradiance(std::span(starts_).first(n), *workspace_, std::span(irradiance_).first(n),
                                       std::span(valid_).first(n));
         for (std::uint32_t k = 0; k < n; ++k) {
-            if (!valid_[k]) continue;
             lit += albedo_[k] * irradiance_[k];
-            ++lit_count;
+            lit_count += valid_[k];
         }
     }
 

@@ -8,13 +8,18 @@
 namespace lumel {
 namespace {
 
-// The radical inverse of the index in base 2 beside the index itself, each in the middle of its sixty-fourth.
+// The radical inverse of the index in base 2 beside the index itself, each in the middle of its sixty-fourth; in an
+// order in which the first 2^k points are spread as evenly as 2^k can be: one in each of the boxes of 2^-a x 2^-b of
+// the square, a + b = k. The order is linear over GF(2), its columns found by trying.
 constexpr std::array<Vec2, kSamplesPerTexel> hammersley_set() {
+    constexpr std::array<std::uint32_t, 6> kColumns{51, 17, 15, 5, 3, 1};
     std::array<Vec2, kSamplesPerTexel> points;
     for (std::uint32_t s = 0; s < kSamplesPerTexel; ++s) {
-        std::uint32_t reversed = 0;
-        for (std::uint32_t bit = 0; bit < 6; ++bit) reversed |= ((s >> bit) & 1u) << (5 - bit);
-        points[s] = {(static_cast<float>(s) + 0.5f) / 64.0f, (static_cast<float>(reversed) + 0.5f) / 64.0f};
+        std::uint32_t index = 0, reversed = 0;
+        for (std::uint32_t bit = 0; bit < 6; ++bit)
+            if ((s >> bit) & 1u) index ^= kColumns[bit];
+        for (std::uint32_t bit = 0; bit < 6; ++bit) reversed |= ((index >> bit) & 1u) << (5 - bit);
+        points[s] = {(static_cast<float>(index) + 0.5f) / 64.0f, (static_cast<float>(reversed) + 0.5f) / 64.0f};
     }
     return points;
 }
