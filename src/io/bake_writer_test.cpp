@@ -235,7 +235,11 @@ TEST(Preview, IsTheMeanOfCoveredTexels) {
 
 // Everything but rays: a scene, its layout, made-up pages.
 struct Baked {
-    explicit Baked(const std::filesystem::path& output) : loaded(scene()) {
+    explicit Baked(const std::filesystem::path& output, Preset preset = Preset::medium,
+                   std::optional<bool> denoise = {})
+        : loaded(scene()) {
+        options.preset = preset;
+        options.denoise = denoise;
         ChartOptions chart_options;
         chart_options.texels_per_metre = 12;
         geometry = flatten(loaded.scene(), loaded.context).value();
@@ -303,6 +307,8 @@ TEST(BakeWriter, ManifestAndReportFollowTheirSchemas) {
     const Json manifest = json_file(folder / "out/manifest.json"), report = json_file(folder / "out/report.json");
     EXPECT_EQ(joined(schema("manifest").errors(manifest)), "");
     EXPECT_EQ(joined(schema("report").errors(report)), "");
+    EXPECT_EQ(manifest["denoised"], false);
+    EXPECT_EQ(report["options"]["denoise"], false);
     EXPECT_EQ(manifest["instances"][1]["class"], "volume");
     EXPECT_EQ(manifest["instances"][1]["transform"][9], 2.0);
     EXPECT_EQ(manifest["charts"]["page"].size(), baked.atlas.placements.size());
@@ -311,6 +317,19 @@ TEST(BakeWriter, ManifestAndReportFollowTheirSchemas) {
     // Every file that the manifest names is there.
     for (const auto& [kind, file] : manifest["pages"][0]["files"].items())
         EXPECT_TRUE(std::filesystem::exists(folder / "out" / file["file"].get<std::string>())) << kind;
+}
+
+TEST(BakeWriter, TheManifestSaysWhetherTheBakeWasDenoised) {
+    const auto denoised = [](Preset preset, std::optional<bool> asked) {
+        const TemporaryFolder folder;
+        Baked baked(folder / "out", preset, asked);
+        EXPECT_TRUE(baked.writer->write_scene().ok());
+        EXPECT_TRUE(baked.finish().ok());
+        return json_file(folder / "out/manifest.json")["denoised"];
+    };
+    EXPECT_EQ(denoised(Preset::preview, {}), true);
+    EXPECT_EQ(denoised(Preset::preview, false), false);
+    EXPECT_EQ(denoised(Preset::medium, true), true);
 }
 
 TEST(JsonSchema, RefusesWhatTheSchemaForbids) {

@@ -116,6 +116,8 @@ Json frame_json() {
             {"sh_basis", "real orthonormal, Condon-Shortley signs"}};
 }
 
+bool is_denoised(const BakeOptions& options) { return options.denoise.value_or(preset_values(options.preset).denoise); }
+
 Json manifest_json(const ManifestInput& in) {
     Json out;
     out["version"] = kVersion;
@@ -132,6 +134,7 @@ Json manifest_json(const ManifestInput& in) {
     out["encoding"] = {{"lightmap", "irradiance"}, {"directional", "l1-normalised"}};
     out["frame"] = frame_json();
     out["layers"] = {{"included", layer_names(in.options.include)}, {"master", layer_names(Include{})}};
+    out["denoised"] = is_denoised(in.options);
     out["texels_per_metre"] = in.atlas.texels_per_metre;
     out["scene_wide_uvs"] = in.charts.scene_wide;
     out["figures"] = {{"estimated_nrmse", number(in.report.estimated_nrmse)},
@@ -184,7 +187,7 @@ Json options_json(const BakeOptions& options) {
             {"max_page", options.max_page},
             {"texels_per_metre", options.texels_per_metre},
             {"uv1", kUv1[static_cast<std::size_t>(options.uv1)]},
-            {"denoise", options.denoise.value_or(preset_values(options.preset).denoise)},
+            {"denoise", is_denoised(options)},
             {"dilate", options.dilate},
             {"two_sided", options.two_sided},
             {"ao_distance", options.ao_distance},
