@@ -10,7 +10,7 @@ DiscLight::DiscLight(const Light& light)
       area_(0.25 * kPi * patch_.area()),
       radiance_(light.intensity) {}
 
-double DiscLight::power() const { return kPi * area_ * strength(radiance_); }
+double DiscLight::power() const { return double{kPi} * area_ * strength(radiance_); }
 
 LightSample DiscLight::sample(Vec3 point, Vec2 u) const {
     LightSample sample = patch_.towards(point, ConcentricDisc::sample(u), area_);

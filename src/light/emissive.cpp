@@ -41,7 +41,7 @@ double EmissiveTriangle::power(const Scene& scene) const {
     // Bright spots between the points keep a chance to be sampled.
     constexpr double kFloor = 1e-3;
     const double mean = std::max(sum / (n * n), kFloor * strength(material.emission));
-    return kPi * geometry_.area(triangle_) * mean * (double_sided() ? 2.0 : 1.0);
+    return double{kPi} * geometry_.area(triangle_) * mean * (double_sided() ? 2.0 : 1.0);
 }
 
 LightSample EmissiveTriangle::sample(Vec3 point, Vec2 u) const {

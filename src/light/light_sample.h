@@ -28,6 +28,7 @@ struct LightHit {
 };
 
 // Mean of the channels: how much of the error of a colour image a light can cause. Luminance would starve blue lights.
+// Finite for all that validate() lets through (kMaxRadiance).
 constexpr float strength(Vec3 color) { return (color.x + color.y + color.z) * (1.0f / 3.0f); }
 
 }  // namespace lumel

@@ -28,7 +28,7 @@ RectangleLight::RectangleLight(const Light& light)
       right_angled_(std::fabs(dot(x_axis_, y_axis_)) < 1e-4f),
       radiance_(light.intensity) {}
 
-double RectangleLight::power() const { return kPi * patch_.area() * strength(radiance_); }
+double RectangleLight::power() const { return double{kPi} * patch_.area() * strength(radiance_); }
 
 RectangleLight::View RectangleLight::view_from(Vec3 point) const {
     const Vec3 to_center = patch_.center() - point;

@@ -1,12 +1,16 @@
 #include "math/discrete.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include "base/check.h"
 
 namespace lumel {
 
 void share_units(std::span<const double> weights, std::size_t guaranteed, std::span<std::uint32_t> ends) {
     double total = 0.0;
     for (const double w : weights) total += w;
+    LUMEL_CHECK(std::isfinite(total), total);
     const auto free_units = static_cast<double>(kUnits - guaranteed);
     const auto count = static_cast<double>(weights.size());
     // Rounding the running sum, not the items, keeps every error below one unit; at the end it equals the total

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <vector>
 
 #include "support/statistics.h"
@@ -44,6 +45,11 @@ TEST(ShareUnits, ItemsOfNoWeightGetNone) {
     EXPECT_EQ(units_of(ends, 0), 0u);
     EXPECT_EQ(units_of(ends, 2), 0u);
     EXPECT_EQ(units_of(ends, 4), 0u);
+}
+
+// Infinite power once became shares that are no number, and a choice beyond the end of the list.
+TEST(ShareUnitsDeathTest, RefusesWeightsWithoutASum) {
+    EXPECT_DEATH(shares({1, std::numeric_limits<double>::infinity()}, 0), "");
 }
 
 // The claim of the header: over all 2^24 values that a random float can take, each item is chosen exactly as often as

@@ -1,6 +1,9 @@
 // The gate that every scene passes before a stage sees it. Later stages index without asking again.
 #include <cmath>
+#include <locale>
+#include <sstream>
 #include <string>
+#include <string_view>
 
 #include "base/try.h"
 #include "math/constants.h"
@@ -18,8 +21,24 @@ std::string item(const char* kind, std::size_t index, const std::string& name) {
     return name.empty() ? out : out + " '" + name + "'";
 }
 
+std::string brief(float x) {
+    std::ostringstream out;
+    out.imbue(std::locale::classic());
+    out << x;
+    return out.str();
+}
+
 bool finite(float x) { return std::isfinite(x); }
 bool not_negative(Vec3 v) { return is_finite(v) && v.x >= 0.0f && v.y >= 0.0f && v.z >= 0.0f; }
+// Of light; the actual product of all that scales it. Error: `where`, what is too bright and what to lower.
+Status check_bright(Vec3 light, std::string_view where, const char* what, const char* remedy) {
+    if (!not_negative(light))
+        return bad(std::string(where), std::string(what) + " must be finite and not negative", remedy);
+    if (max_component(light) > kMaxRadiance)
+        return bad(std::string(where),
+                   std::string(what) + " is " + brief(max_component(light)) + ", above the limit of 1e12", remedy);
+    return success();
+}
 // Loose enough for normals stored in 8 bits, tight enough that nobody needs to normalise again.
 bool unit(Vec3 v) { return std::fabs(dot(v, v) - 1.0f) < 1e-3f; }
 bool finite(const Affine& m) {
@@ -47,7 +66,7 @@ Status check_material(const Scene& scene, const Material& material, const std::s
     if (!not_negative(material.base_color) || max_component(material.base_color) > 1.0f)
         return bad(where, "base colour must lie in [0, 1]");
     if (!(material.alpha >= 0.0f && material.alpha <= 1.0f)) return bad(where, "alpha must lie in [0, 1]");
-    if (!not_negative(material.emission)) return bad(where, "emission must be finite and not negative");
+    LUMEL_TRY_STATUS(check_bright(material.emission, where, "emission", "lower emissiveFactor or emissiveStrength"));
     if (!(material.alpha_cutoff >= 0.0f && finite(material.alpha_cutoff)))
         return bad(where, "alpha cutoff must not be negative");
     LUMEL_TRY_STATUS(check_texture_ref(scene, material.base_color_texture, where));
@@ -140,13 +159,16 @@ Status check_area_light(const Light& light, const std::string& where) {
 }
 
 Status check_light(const Light& light, const std::string& where) {
-    if (!not_negative(light.intensity)) return bad(where, "intensity must be finite and not negative");
+    constexpr const char* kRemedy = "lower the light's intensity, nits or illuminance";
+    LUMEL_TRY_STATUS(check_bright(light.intensity, where, "intensity", kRemedy));
     if (!is_finite(light.position)) return bad(where, "position is not finite");
     if (!unit(light.direction)) return bad(where, "direction is not of unit length");
     for (const float f : {light.radius, light.range, light.angular_diameter, light.indirect_scale})
         if (!(f >= 0.0f && finite(f)))
             return bad(where, "radius, range, angle and scale must be finite and not negative");
     if (!not_negative(light.indirect_color)) return bad(where, "indirect colour must be finite and not negative");
+    LUMEL_TRY_STATUS(check_bright(light.intensity * light.indirect_color * light.indirect_scale, where,
+                                  "intensity times indirect scale and colour", "lower one of them"));
     if (light.angular_diameter > kPi) return bad(where, "a sun's angular diameter is at most 180 degrees");
     if (light.shape == LightShape::spot &&
         !(light.inner_cone >= 0.0f && light.inner_cone <= light.outer_cone && light.outer_cone <= 0.5f * kPi + 1e-6f))
@@ -158,14 +180,15 @@ Status check_light(const Light& light, const std::string& where) {
 }
 
 Status check_sky(const Sky& sky) {
-    if (!not_negative(sky.color)) return bad("sky", "colour must be finite and not negative");
+    constexpr const char* kRemedy = "lower --sky-intensity, or the intensity or colour in the sidecar";
+    LUMEL_TRY_STATUS(check_bright(sky.color, "sky", "colour times intensity", kRemedy));
     if (!finite(sky.rotation)) return bad("sky", "rotation is not finite");
     if (!sky.map) return success();
     if (sky.map->width == 0 || sky.map->height == 0 ||
         sky.map->radiance.size() != std::size_t{sky.map->width} * sky.map->height)
         return bad("sky map", "holds another number of pixels than width * height");
     for (const Vec3& pixel : sky.map->radiance)
-        if (!not_negative(pixel)) return bad("sky map", "pixels must be finite and not negative");
+        LUMEL_TRY_STATUS(check_bright(pixel, "sky map", "the brightest of its pixels, times intensity,", kRemedy));
     return success();
 }
 
@@ -198,6 +221,11 @@ Status check_has_triangles(const Scene& scene) {
                "give a scene with at least one mesh of triangles in its default scene");
 }
 
+Status check_lighting(const Scene& scene) {
+    LUMEL_TRY_STATUS(check_all(scene.lights, "light", check_light));
+    return check_sky(scene.sky);
+}
+
 Status check_scene(const Scene& scene) {
     if (scene.materials.empty()) return bad("materials", "the last material must be glTF's default; there is none");
     LUMEL_TRY_STATUS(check_all(scene.textures, "texture", check_texture));
@@ -209,20 +237,21 @@ Status check_scene(const Scene& scene) {
         return check_instance(scene, instance, where);
     }));
     LUMEL_TRY_STATUS(check_display(scene));
-    LUMEL_TRY_STATUS(check_all(scene.lights, "light", check_light));
-    LUMEL_TRY_STATUS(check_sky(scene.sky));
+    LUMEL_TRY_STATUS(check_lighting(scene));
     LUMEL_TRY_STATUS(check_all(scene.cameras, "camera", check_camera));
     return check_has_triangles(scene);
 }
 
-}  // namespace
-
-Status validate(const Scene& scene) {
-    Status status = check_scene(scene);
+Status with_source(const Scene& scene, Status status) {
     if (status.ok() || scene.source.empty()) return status;
     Error error = std::move(status).error();
     error.where = error.where.empty() ? scene.source : scene.source + ": " + error.where;
     return error;
 }
+
+}  // namespace
+
+Status validate(const Scene& scene) { return with_source(scene, check_scene(scene)); }
+Status validate_lighting(const Scene& scene) { return with_source(scene, check_lighting(scene)); }
 
 }  // namespace lumel

@@ -74,6 +74,15 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"texture index", [](Scene& s) { s.materials[0].base_color_texture.texture = 1; }},
         Fault{"width * height * 4", [](Scene& s) { s.textures[0].width = 2; }},
         Fault{"intensity", [](Scene& s) { s.lights[0].intensity.x = kNan; }},
+        Fault{"light 0 'light 0': intensity is 3e+38", [](Scene& s) { s.lights[0].intensity.y = 3e38f; }},
+        Fault{"intensity times indirect scale",
+              [](Scene& s) { s.lights[0].intensity.x = 1e9f, s.lights[0].indirect_scale = 1e6f; }},
+        Fault{"material 0 'material 0': emission is 2e+12", [](Scene& s) { s.materials[0].emission.x = 2e12f; }},
+        Fault{"lower --sky-intensity", [](Scene& s) { s.sky.color.z = 1e13f; }},
+        Fault{"sky map: the brightest",
+              [](Scene& s) {
+                  s.sky.map = SkyMap{1, 1, {Vec3{0, 2e12f, 0}}};
+              }},
         Fault{"unit length",
               [](Scene& s) {
                   s.lights[0].direction = {0, 0, -2};
@@ -98,6 +107,20 @@ INSTANTIATE_TEST_SUITE_P(
               }},
         Fault{"field of view", [](Scene& s) { s.cameras[0].vertical_fov = 0; }},
         Fault{"baked instance", [](Scene& s) { s.display.instances[0].baked_instance = 5; }}));
+
+TEST(Validate, TakesTheBrightestLight) {
+    Scene scene = sound_scene();
+    scene.lights[0].intensity = scene.materials[0].emission = scene.sky.color = Vec3{1, 1, 1} * kMaxRadiance;
+    EXPECT_TRUE(validate(scene).ok());
+}
+
+TEST(Validate, LightingAloneIsAskedAboutLightsAndSky) {
+    Scene scene = sound_scene();
+    scene.materials.clear();
+    EXPECT_TRUE(validate_lighting(scene).ok());
+    scene.sky.color.x = 1e13f;
+    EXPECT_FALSE(validate_lighting(scene).ok());
+}
 
 TEST(Validate, ErrorsNameTheSource) {
     Scene scene = sound_scene();

@@ -79,4 +79,11 @@ Hash128 hash_scene(const Scene& scene);
 // unit directions, textures whole. For scenes built through the API as well as those read from a file.
 Status validate(const Scene& scene);
 
+// The part of it that asks about lights and sky, for those who change them later.
+Status validate_lighting(const Scene& scene);
+
+// Nits, lux or candela: the brightest light that Lumel takes. The disc of the sun has 1.6e9 nits; a few hundred
+// times beyond it, sums over lights and samples still keep far from the end of single precision.
+inline constexpr float kMaxRadiance = 1e12f;
+
 }  // namespace lumel

@@ -90,6 +90,15 @@ GltfBuilder meshopt() {
     return builder;
 }
 
+// Light and emission at the end of single precision.
+GltfBuilder too_bright() {
+    GltfBuilder builder = materials();
+    builder.root["materials"][0]["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = 3e38;
+    builder.root["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0;
+    builder.root["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}, {"intensity", 3e38}}};
+    return builder;
+}
+
 std::uint32_t read_u32(const std::uint8_t* at) {
     std::uint32_t value = 0;
     std::memcpy(&value, at, 4);
@@ -141,8 +150,9 @@ void mutate_number(std::vector<std::uint8_t>& json, unsigned seed) {
 }  // namespace
 
 extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
-    lumel::fuzz::seed_corpus(
-        *argc, *argv, {plain().glb(), materials().glb(), instances().glb(), sparse_strip().glb(), meshopt().glb()});
+    lumel::fuzz::seed_corpus(*argc, *argv,
+                             {plain().glb(), materials().glb(), instances().glb(), sparse_strip().glb(),
+                              meshopt().glb(), too_bright().glb()});
     return 0;
 }
 
