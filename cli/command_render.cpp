@@ -107,9 +107,7 @@ Status run(const Options& options) {
     const Transport transport{scene, geometry, surfaces, lights, *tracer};
     LUMEL_TRY(const Camera camera, find_camera(options.camera, transport, context));
 
-    PathOptions path;
-    path.bounces = light.bounces;
-    path.seed = light.seed;
+    const PathOptions path = picture_path(light);
     PictureOptions picture;
     picture.width = size.width;
     picture.height = size.height;

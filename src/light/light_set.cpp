@@ -170,7 +170,7 @@ LightHit LightSet::intersect_shape(std::uint32_t index, Vec3 origin, Vec3 direct
     return scaled(hit, artist_scale(local.light, bounced));
 }
 
-LightHit LightSet::emissive(std::uint32_t triangle, float b1, float b2, Vec3 /*from*/, Vec3 direction, float distance,
+LightHit LightSet::emissive(std::uint32_t triangle, float b1, float b2, Vec3 direction, float distance,
                             bool back_face) const {
     if (!is_emitter(geometry_->triangles[triangle])) return {};
     LightHit hit = EmissiveTriangle(*geometry_, surfaces_, triangle).hit(b1, b2, direction, distance, back_face);

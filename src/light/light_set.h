@@ -52,10 +52,10 @@ public:
     [[nodiscard]] LightHit sky(Vec3 direction) const;
     // Suns with an angular size that contain the direction: radiances add; one LightHit per sun (pdf of that sun).
     [[nodiscard]] LightHit sun(std::size_t sun, Vec3 direction, bool bounced) const;
-    // Density of sample_local for the given point of an emissive triangle seen from `from`; radiance included. Only the
-    // front emits, unless double-sided.
-    [[nodiscard]] LightHit emissive(std::uint32_t triangle, float b1, float b2, Vec3 from, Vec3 direction,
-                                    float distance, bool back_face) const;
+    // Density of sample_local for the given point of an emissive triangle; radiance included. Only the front emits,
+    // unless double-sided.
+    [[nodiscard]] LightHit emissive(std::uint32_t triangle, float b1, float b2, Vec3 direction, float distance,
+                                    bool back_face) const;
     // Area lights that are not geometry (rectangle, disc, sphere, point and spot with a radius): they never block rays;
     // every one that the ray crosses before `max_distance` adds its light. Calls add(LightHit) for each.
     template <class Add>

@@ -289,8 +289,7 @@ void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w
             if (hit.back_face && !(triangle.flags & kDoubleSided)) continue;
             if (triangle.flags & kEmissive)
                 arrive(lane, Layer::direct,
-                       lights.emissive(hit.triangle, hit.b1, hit.b2, vertex.position, vertex.direction, hit.t,
-                                       hit.back_face));
+                       lights.emissive(hit.triangle, hit.b1, hit.b2, vertex.direction, hit.t, hit.back_face));
             if (bounce == options_.bounces || (triangle.flags & kOccluderOnly)) continue;
 
             // The path stands on a new surface.
