@@ -58,7 +58,8 @@ struct BakeSink {
 };
 
 // Applies the options' sky and sun to the scene, once, before bake() or a render. A sky map named by the options has
-// been loaded into scene.sky by the caller: files are `io`'s. Errors: usage, unsupported (no sun to extract).
+// been loaded into scene.sky by the caller: files are `io`'s. Errors: usage, unsupported (no sun to extract),
+// invalid_input (light brighter than Lumel takes).
 Status apply_lighting(Scene& scene, const BakeOptions& options);
 
 // Runs charts, atlas, texels, tracing and post-processing, page by page. The scene is as apply_lighting left it.

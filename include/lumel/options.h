@@ -36,7 +36,7 @@ enum class StopRule : std::uint8_t {
 };
 
 struct SunOptions {
-    std::optional<Vec3> direction;  // the way light travels; unset: no sun from the options
+    std::optional<Vec3> direction;  // the way light travels, of any length; unset: no sun from the options
     double illuminance = 0.0;       // lux on a plane facing it; 0 with a direction set: 100 000
     Vec3 color{1, 1, 1};            // linear, times illuminance
     double angle_degrees = 0.0;     // angular diameter, 0..90
@@ -45,8 +45,8 @@ struct SunOptions {
 struct SkyOptions {
     std::optional<Vec3> color;    // constant radiance
     std::string file;             // equirectangular .hdr or .exr; empty: none. Overrides the sidecar's sky
-    double intensity = 1.0;       // nits per unit of colour or map, >= 0
-    double rotation_degrees = 0;  // about +Y
+    double intensity = 1.0;       // times the sky, be it of these options or the scene's: nits per unit, >= 0
+    double rotation_degrees = 0;  // about +Y; added to that of the scene's sky
     double blur_degrees = 0.0;    // energy-preserving prefilter: half width of the kernel; 0 = none, up to 90
     bool extract_sun = false;     // find the sun's disc in the map, remove it and add it as a directional light
 };

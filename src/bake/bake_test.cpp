@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "base/hash.h"
 #include "chart/chart_set.h"
 #include "light/light_set.h"
@@ -142,6 +144,96 @@ TEST(Bake, AnySplitOfTheTexelsGivesTheSameBits) {
             }
         }
         EXPECT_EQ(hash_of(whole), hash_of(merged)) << shards << " shards";
+    }
+}
+
+// A picture shows the layers that the bake's files sum, scaled alike.
+TEST(Bake, IrradianceOfPicturesIsTheScaledSumOfLayers) {
+    Context context(1);
+    const Scene scene = room();
+    const WorldGeometry geometry = flatten(scene, context).value();
+    const SurfaceReader surfaces(scene, geometry);
+    const LightSet lights(scene, geometry, surfaces);
+    const auto tracer = make_embree_tracer(geometry, surfaces, context).value();
+    const Transport transport{scene, geometry, surfaces, lights, *tracer};
+    std::array<PathStart, kWavefrontLanes> starts;
+    for (std::uint32_t i = 0; i < kWavefrontLanes; ++i) starts[i] = {{1.5f, 1e-3f, 1.5f}, {0, 1, 0}, 1, i};
+    const auto sum_of = [&](std::array<float, kLayerCount> layer_scale) {
+        PathOptions path;
+        path.bounces = 4;
+        path.layer_scale = layer_scale;
+        const PathIntegrator integrator(transport, path);
+        const auto workspace = integrator.make_workspace();
+        std::array<Vec3, kWavefrontLanes> irradiance;
+        std::array<std::uint8_t, kWavefrontLanes> valid;
+        integrator.gather_irradiance(starts, *workspace, irradiance, valid);
+        Vec3 sum{};
+        for (const Vec3 i : irradiance) sum += i;
+        return sum;
+    };
+    const Vec3 direct = sum_of({1, 0, 0}), sky = sum_of({0, 1, 0}), indirect = sum_of({0, 0, 1});
+    for (const Vec3 layer : {direct, sky, indirect}) EXPECT_GT(layer.x, 0.0f);
+    const Vec3 all = sum_of({1, 1, 1}), scaled = sum_of({2, 0.5f, 3});
+    const Vec3 expected_all = direct + sky + indirect, expected_scaled = direct * 2.0f + sky * 0.5f + indirect * 3.0f;
+    // The same few hundred numbers summed in another order: rounding stays below 1e-5.
+    for (std::size_t c = 0; c < 3; ++c) {
+        EXPECT_NEAR(all[c], expected_all[c], 1e-5f * expected_all[c]);
+        EXPECT_NEAR(scaled[c], expected_scaled[c], 1e-5f * expected_scaled[c]);
+    }
+}
+
+TEST(Lighting, SkyIntensityAndRotationActOnTheScenesOwnSky) {
+    Scene scene = room();
+    scene.sky.rotation = 0.25f;
+    BakeOptions options;
+    options.sky.intensity = 2;
+    options.sky.rotation_degrees = 90;
+    ASSERT_TRUE(apply_lighting(scene, options).ok());
+    EXPECT_EQ(scene.sky.color, (Vec3{0.8f, 1.2f, 2.0f}));
+    EXPECT_FLOAT_EQ(scene.sky.rotation, 0.25f + 1.57079633f);
+}
+
+TEST(Lighting, TheOptionsSkyReplacesTheScenes) {
+    Scene scene = room();
+    scene.sky.rotation = 0.25f;
+    BakeOptions options;
+    options.sky.color = Vec3{1, 2, 3};
+    options.sky.intensity = 2;
+    ASSERT_TRUE(apply_lighting(scene, options).ok());
+    EXPECT_EQ(scene.sky.color, (Vec3{2, 4, 6}));
+    EXPECT_EQ(scene.sky.rotation, 0.0f);
+}
+
+TEST(Lighting, TooBrightIsAnErrorThatNamesTheRemedy) {
+    for (const double intensity : {2e12, 3e38, 1e300}) {
+        Scene scene = room();
+        scene.sky.map = SkyMap{2, 1, {Vec3{1, 1, 1}, Vec3{1, 10, 1}}};
+        BakeOptions options;
+        options.sky.intensity = intensity;
+        options.sky.blur_degrees = 5;
+        const Status status = apply_lighting(scene, options);
+        ASSERT_FALSE(status.ok()) << intensity;
+        EXPECT_EQ(status.error().code, ErrorCode::invalid_input);
+        EXPECT_NE(status.error().text().find("--sky-intensity"), std::string::npos) << status.error().text();
+
+        scene = room();
+        BakeOptions sun;
+        sun.sun.direction = Vec3{0, -1, 0};
+        sun.sun.illuminance = intensity;
+        const Status bright_sun = apply_lighting(scene, sun);
+        ASSERT_FALSE(bright_sun.ok()) << intensity;
+        EXPECT_NE(bright_sun.error().text().find("--sun-direction"), std::string::npos) << bright_sun.error().text();
+    }
+}
+
+TEST(Lighting, TheSunsDirectionMayHaveAnyLength) {
+    for (const float length : {1e-30f, 1.0f, 1e30f}) {
+        Scene scene = room();
+        BakeOptions options;
+        options.sun.direction = Vec3{0, -3, 4} * length;
+        ASSERT_TRUE(apply_lighting(scene, options).ok()) << length;
+        EXPECT_NEAR(scene.lights.back().direction.y, -0.6f, 1e-6f) << length;
+        EXPECT_NEAR(scene.lights.back().direction.z, 0.8f, 1e-6f) << length;
     }
 }
 

@@ -1,10 +1,15 @@
 // Sky and sun of the options, and the artist's global controls, applied to a scene before anything is traced.
 
+#include <algorithm>
+#include <limits>
+
 #include "base/try.h"
 #include "light/light_set.h"
 #include "lumel/bake.h"
 #include "math/constants.h"
+#include "math/frame.h"
 #include "math/trig.h"
+#include "scene/world_geometry.h"
 
 namespace lumel {
 namespace {
@@ -12,13 +17,16 @@ namespace {
 constexpr double kDefaultSunIlluminance = 100000.0;  // lux: a clear noon
 constexpr float kRadians = kPi / 180.0f;
 
+// Too large a factor stays so, for the check of the product to find.
+float single(double factor) { return static_cast<float>(std::min(factor, double{std::numeric_limits<float>::max()})); }
+
 Light make_sun(const SunOptions& options) {
     Light sun;
     sun.name = "--sun-direction";
     sun.shape = LightShape::sun;
-    sun.direction = normalize(*options.direction);
+    sun.direction = unit_or(*options.direction, Vec3{});
     const double lux = options.illuminance > 0.0 ? options.illuminance : kDefaultSunIlluminance;
-    sun.intensity = options.color * static_cast<float>(lux);
+    sun.intensity = options.color * single(lux);
     sun.angular_diameter = static_cast<float>(options.angle_degrees) * kRadians;
     return sun;
 }
@@ -36,10 +44,9 @@ Status apply_lighting(Scene& scene, const BakeOptions& options) {
         scene.sky = {};
         scene.sky.color = *options.sky.color;
     }
-    if (options.sky.color || !options.sky.file.empty()) {
-        scale(scene.sky, static_cast<float>(options.sky.intensity));
-        scene.sky.rotation = static_cast<float>(options.sky.rotation_degrees) * kRadians;
-    }
+    scale(scene.sky, single(options.sky.intensity));
+    scene.sky.rotation += static_cast<float>(options.sky.rotation_degrees) * kRadians;
+    LUMEL_TRY_STATUS(validate_lighting(scene));
     if (options.sky.extract_sun) {
         if (!scene.sky.map)
             return Error{ErrorCode::usage, "--sky-extract-sun needs a sky map", {}, "give one with --sky FILE"};
@@ -54,7 +61,7 @@ Status apply_lighting(Scene& scene, const BakeOptions& options) {
     if (options.sky.blur_degrees > 0.0 && scene.sky.map)
         scene.sky.map = blur_sky(*scene.sky.map, static_cast<float>(options.sky.blur_degrees) * kRadians);
     if (options.sun.direction) scene.lights.push_back(make_sun(options.sun));
-    return success();
+    return validate_lighting(scene);
 }
 
 PresetValues preset_values(Preset preset) {

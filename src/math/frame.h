@@ -21,4 +21,12 @@ struct Frame {
     [[nodiscard]] Vec3 to_local(Vec3 v) const { return {dot(v, tangent), dot(v, bitangent), dot(v, normal)}; }
 };
 
+// Unit vector along a finite one of any length but zero, which gives `fallback`: squares in double do not overflow.
+inline Vec3 unit_or(Vec3 v, Vec3 fallback) {
+    const double x = v.x, y = v.y, z = v.z;
+    const double length = std::sqrt(x * x + y * y + z * z);
+    if (!(length > 0.0)) return fallback;
+    return {static_cast<float>(x / length), static_cast<float>(y / length), static_cast<float>(z / length)};
+}
+
 }  // namespace lumel

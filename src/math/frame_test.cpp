@@ -44,5 +44,15 @@ TEST(Frame, ToLocalUndoesToWorld) {
     EXPECT_EQ(frame.to_world({0, 0, 1}), frame.normal);
 }
 
+TEST(UnitOr, TakesAnyLengthButZero) {
+    for (const float length : {1e-40f, 1e-20f, 1.0f, 1e20f, 6e37f}) {
+        const Vec3 unit = unit_or(Vec3{3, 0, -4} * length, Vec3{});
+        // 1e-40 is stored with five digits.
+        EXPECT_NEAR(unit.x, 0.6f, 1e-4f) << length;
+        EXPECT_NEAR(unit.z, -0.8f, 1e-4f) << length;
+    }
+    EXPECT_EQ(unit_or({}, {0, 1, 0}), (Vec3{0, 1, 0}));
+}
+
 }  // namespace
 }  // namespace lumel
