@@ -42,12 +42,11 @@ Result<std::uint64_t> parse_bytes(const std::string& text, const std::string& op
 class LightOptions {
 public:
     void declare(CLI::App& app);
-    // Fills sky, sun, include, scales, bounces, seed, ao_distance, two_sided, threads.
+    // Fills sky, sun, include, scales, samples, bounces, seed, threads.
     Status read(BakeOptions& options) const;
 
 private:
     std::string sky_, sun_direction_, sun_color_ = "1,1,1", include_ = "direct,sky,indirect";
-    std::string sun_illuminance_text_;
     BakeOptions values_;
 };
 

@@ -1,6 +1,7 @@
 // lumel bake: the main job.
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 
 #include "base/try.h"
 #include "command.h"
@@ -19,6 +20,7 @@ struct Options {
     std::string scene, output, resolution, max_memory, progress;
     std::string preset = "medium", uv1 = "automatic", stop = "fixed", denoise = "auto";
     std::uint32_t views = 2, view_samples = 32;
+    std::optional<double> error, confidence;
     BakeOptions values;
     LightOptions light;
 };
@@ -45,6 +47,13 @@ Result<BakeOptions> read_options(const Options& options) {
               : options.uv1 == "ignore" ? Uv1Choice::ignore
                                         : Uv1Choice::automatic;
     if (options.denoise != "auto") out.denoise = options.denoise == "on";
+    if (options.stop != "flux" && (options.error || options.confidence))
+        return Error{ErrorCode::usage,
+                     std::string(options.error ? "--error" : "--confidence") + " needs --stop flux",
+                     {},
+                     "a fixed number of samples has no error to stop at"};
+    out.error = options.error.value_or(out.error);
+    out.confidence = options.confidence.value_or(out.confidence);
     out.stop = options.stop == "flux" ? StopRule::flux : StopRule::fixed;
     return out;
 }
@@ -78,9 +87,7 @@ Status write_views(const BakeWriter& writer, const Scene& scene, const BakeOptio
     const BakedIrradiance lookup = [&](std::uint32_t triangle, float b1, float b2) {
         return baked.irradiance(triangle, b1, b2);
     };
-    PathOptions path;
-    path.bounces = options.bounces;
-    path.seed = options.seed;
+    const PathOptions path = picture_path(options);
     LUMEL_TRY(const std::vector<Camera> views, choose_views(transport, count, context));
     for (std::size_t k = 0; k < views.size(); ++k) {
         LUMEL_TRY(const Image truth, render_picture(transport, path, views[k], picture, nullptr, context));
@@ -180,12 +187,13 @@ Run add_bake(CLI::App& app) {
            "fixed: every texel takes --samples; flux: each stops at --error (published rule, biased on rare light)")
         ->check(CLI::IsMember({"fixed", "flux"}))
         ->group(transport);
-    app.add_option("--error", values.error, "Relative error at which --stop flux stops")
+    app.add_option("--error", options->error, "Relative error at which --stop flux stops")
         ->check(between(1e-6, 10.0))
         ->group(transport);
-    app.add_option("--confidence", values.confidence, "Confidence of --error")
+    app.add_option("--confidence", options->confidence, "Confidence of --error")
         ->check(between(0.5, 0.9999))
         ->group(transport);
+    app.add_flag("--two-sided", values.two_sided, "Light both sides of double-sided surfaces")->group(transport);
     app.add_option("--max-memory", options->max_memory, "Ceiling such as 4G; pages shrink to fit it");
     options->light.declare(app);
     declare_progress(app, options->progress);

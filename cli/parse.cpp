@@ -6,9 +6,12 @@
 
 #include "base/try.h"
 #include "command.h"
+#include "math/frame.h"
 
 namespace lumel::cli {
 namespace {
+
+constexpr double kMaxScale = 1e6;  // of layers; that of a light in the sidecar
 
 Error usage(const std::string& option, const std::string& text, const std::string& expected) {
     return {ErrorCode::usage, option + ": '" + text + "' is not " + expected, {}, {}};
@@ -79,10 +82,10 @@ Result<std::uint64_t> parse_bytes(const std::string& text, const std::string& op
 void LightOptions::declare(CLI::App& app) {
     const std::string group = "Light";
     app.add_option("--sky", sky_, "Sky: radiance R,G,B, or an equirectangular .hdr or .exr file")->group(group);
-    app.add_option("--sky-intensity", values_.sky.intensity, "Nits per unit of --sky")
+    app.add_option("--sky-intensity", values_.sky.intensity, "Times the sky: nits per unit")
         ->check(not_negative())
         ->group(group);
-    app.add_option("--sky-rotation", values_.sky.rotation_degrees, "Degrees about +Y")
+    app.add_option("--sky-rotation", values_.sky.rotation_degrees, "Degrees about +Y, on top of the sidecar's")
         ->check(between(-360.0, 360.0))
         ->group(group);
     app.add_option("--sky-blur", values_.sky.blur_degrees,
@@ -91,20 +94,23 @@ void LightOptions::declare(CLI::App& app) {
         ->group(group);
     app.add_flag("--sky-extract-sun", values_.sky.extract_sun, "Find the sun's disc in the map and make it a light")
         ->group(group);
-    app.add_option("--sun-direction", sun_direction_, "X,Y,Z: the way the sun's light travels")->group(group);
+    CLI::Option* const sun =
+        app.add_option("--sun-direction", sun_direction_, "X,Y,Z: the way the sun's light travels")->group(group);
     app.add_option("--sun-illuminance", values_.sun.illuminance, "Lux on a plane facing the sun (0: 100000)")
         ->check(not_negative())
+        ->needs(sun)
         ->group(group);
-    app.add_option("--sun-colour,--sun-color", sun_color_, "R,G,B, times the illuminance")->group(group);
+    app.add_option("--sun-colour,--sun-color", sun_color_, "R,G,B, times the illuminance")->needs(sun)->group(group);
     app.add_option("--sun-angle", values_.sun.angle_degrees, "The sun's diameter in degrees")
         ->check(between(0.0, 90.0))
+        ->needs(sun)
         ->group(group);
     app.add_option("--include", include_, "Layers that the files sum: some of direct,sky,indirect")->group(group);
     app.add_option("--direct-scale", values_.direct_scale, "Times direct and sky light")
-        ->check(not_negative())
+        ->check(between(0.0, kMaxScale))
         ->group(group);
     app.add_option("--indirect-scale", values_.indirect_scale, "Times bounced light")
-        ->check(not_negative())
+        ->check(between(0.0, kMaxScale))
         ->group(group);
 
     const std::string transport = "Transport";
@@ -115,7 +121,6 @@ void LightOptions::declare(CLI::App& app) {
         ->check(CLI::Range(0u, 1024u))
         ->group(transport);
     app.add_option("--seed", values_.seed, "Of the random numbers")->group(transport);
-    app.add_flag("--two-sided", values_.two_sided, "Light both sides of double-sided surfaces")->group(transport);
     app.add_option("--threads", values_.threads, "0: one per core")->check(CLI::Range(0u, 1024u));
 }
 
@@ -127,7 +132,6 @@ Status LightOptions::read(BakeOptions& out) const {
     out.samples = values_.samples;
     out.bounces = values_.bounces;
     out.seed = values_.seed;
-    out.two_sided = values_.two_sided;
     out.threads = values_.threads;
 
     if (!sky_.empty()) {
@@ -143,11 +147,9 @@ Status LightOptions::read(BakeOptions& out) const {
     }
     if (!sun_direction_.empty()) {
         LUMEL_TRY(const Vec3 direction, parse_vec3(sun_direction_, "--sun-direction"));
-        if (!(length(direction) > 1e-12f)) return usage("--sun-direction", sun_direction_, "a direction");
-        out.sun.direction = normalize(direction);
-    } else if (out.sun.illuminance > 0.0) {
-        return Error{
-            ErrorCode::usage, "--sun-illuminance needs --sun-direction", {}, "for example --sun-direction 0.3,-1,0.2"};
+        const Vec3 unit = unit_or(direction, Vec3{});
+        if (unit == Vec3{}) return usage("--sun-direction", sun_direction_, "a direction");
+        out.sun.direction = unit;
     }
     LUMEL_TRY(out.sun.color, parse_vec3(sun_color_, "--sun-colour"));
     if (out.sun.color.x < 0 || out.sun.color.y < 0 || out.sun.color.z < 0)

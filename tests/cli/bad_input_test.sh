@@ -57,6 +57,7 @@ sed 's/"mesh":0/"mesh":7/' ok.gltf >mesh.gltf
 sed 's/"POSITION":0/"POSITION":9/' ok.gltf >accessor.gltf
 sed 's/"extensionsUsed"/"extensionsRequired":["ACME_x"],"extensionsUsed"/' ok.gltf >required.gltf
 sed 's/,{"translation.*}}}\]/]/; s/\[0,1\]/[0]/' ok.gltf >dark.gltf
+sed 's/"intensity":100/"intensity":3e38/' ok.gltf >bright.gltf
 cp ok.gltf side.gltf
 echo '{ "sky": ' >side.lumel.json
 echo hello >text.glb
@@ -70,10 +71,24 @@ expect 2 --frobnicate bake ok.gltf -o x --frobnicate
 expect 2 SCENE bake
 expect 2 --output bake ok.gltf
 for pair in --preset=ultra --samples=many --samples=-4 --sun-direction=1,2 --sun-direction=0,0,0 --include=light --include= \
-    --sky=1,1 --sky=nan,0,0 --sky-intensity=nan --texels-per-metre=nan --sky-rotation=nan --direct-scale=-1 \
+    --sky=1,1 --sky=nan,1,1 --sky-intensity=nan --sky-intensity=inf --ao-distance=nan --ao-distance=inf --sun-direction=inf,0,0 \
+    --texels-per-metre=inf --direct-scale=nan --indirect-scale=inf --texels-per-metre=nan --sky-rotation=nan --direct-scale=-1 \
     --max-memory=abc --resolution=0x5 --resolution=99999x99999 --threads=5000; do
     expect 2 "${pair%%=*}" bake ok.gltf -o x --resolution 32x32 "$pair"
 done
+for pair in --sun-angle=1 --sun-color=1,1,1 --sun-illuminance=5; do
+    expect 2 --sun-direction bake ok.gltf -o x "${quick[@]}" "$pair"
+    expect 2 --sun-direction render ok.gltf -o v.png "$pair"
+done
+for pair in --error=0.1 --confidence=0.9; do
+    expect 2 '--stop flux' bake ok.gltf -o x "${quick[@]}" "$pair"
+    expect 0 '' bake ok.gltf -o x "${quick[@]}" --stop flux "$pair"
+done
+for pair in --error=nan --confidence=nan; do
+    expect 2 "${pair%%=*}" bake ok.gltf -o x "${quick[@]}" --stop flux "$pair"
+done
+expect 0 '' bake ok.gltf -o x "${quick[@]}" --sun-direction 1e30,-1e30,0
+expect 2 --two-sided render ok.gltf -o v.png --two-sided
 expect 2 -o bake ok.gltf -o '' "${quick[@]}"
 expect 2 "camera 'nowhere'" render ok.gltf -o v.png --camera nowhere
 expect 2 'same point' render ok.gltf -o v.png --camera '0,0,0;0,0,0;60'
@@ -89,6 +104,9 @@ expect 1 'index 5 is 9' bake index.gltf -o out "${quick[@]}"
 expect 1 'node 0' bake mesh.gltf -o out "${quick[@]}"
 expect 1 "mesh 0 'floor', primitive 0" bake accessor.gltf -o out "${quick[@]}"
 expect 1 ACME_x bake required.gltf -o out "${quick[@]}"
+expect 1 'intensity is 3e+38' bake bright.gltf -o out "${quick[@]}"
+expect 1 --sky-intensity bake ok.gltf -o out "${quick[@]}" --sky 1,1,1 --sky-intensity 3e38
+expect 1 --sky-intensity render ok.gltf -o v.png --sky 1,1,1 --sky-intensity 3e38
 expect 1 side.lumel.json bake side.gltf -o out "${quick[@]}"
 expect 1 --sky bake dark.gltf -o out "${quick[@]}"
 expect 1 text.glb bake ok.gltf -o out "${quick[@]}" --sky text.glb
@@ -100,6 +118,24 @@ echo '{"name": "a page"}' >web/manifest.json
 expect 1 web/manifest.json bake ok.gltf -o web "${quick[@]}"
 [ "$(ls web)" = manifest.json ] || complain "web/ holds $(ls web)"
 [ "$(cat out/* | cksum)" = "$before" ] || complain 'a failed bake changed the older output'
+
+# Pictures show the layers that the bake sums. Here all light is direct.
+for include in direct sky indirect; do
+    expect 0 '' render ok.gltf -o $include.pfm --include $include --samples 4 --resolution 32x32
+done
+expect 0 '' render ok.gltf -o dark.pfm --direct-scale 0 --samples 4 --resolution 32x32
+cmp -s direct.pfm dark.pfm && complain 'render ignores --direct-scale, or shows no light at all'
+cmp -s sky.pfm dark.pfm || complain 'render ignores --include sky'
+cmp -s indirect.pfm dark.pfm || complain 'render ignores --include indirect'
+# Without light the truth in the views has no noise that could depend on the seed; with light, its edges have.
+for seed in 1 2; do
+    for include in direct sky; do
+        expect 0 '' bake ok.gltf -o $include$seed --preset preview --resolution 32x32 --samples 1 --views 1 \
+            --view-samples 1 --seed $seed --include $include
+    done
+done
+cmp -s direct1/preview_view_0.png direct2/preview_view_0.png && complain 'views without noise'
+cmp -s sky1/preview_view_0.png sky2/preview_view_0.png || complain 'views ignore --include'
 
 # Stopped in two stages: paths, and the writing of a large page, which looks at nothing while it compresses a picture.
 stop() {
