@@ -8,6 +8,7 @@
 #include <string>
 
 #include "bake/memory.h"
+#include "base/denormals.h"
 #include "base/try.h"
 #include "chart/chart_set.h"
 #include "light/light_set.h"
@@ -170,6 +171,7 @@ PageReport page_report(const Lightmap& map, const TexelBuffer& buffer) {
 }  // namespace
 
 Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const BakeSink& sink, Context& context) {
+    const FlushDenormals flush;  // in what this thread computes by itself, too
     BakeReport report;
     report.threads = context.threads();
 

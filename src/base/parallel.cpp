@@ -22,7 +22,7 @@ struct ThreadPool::Impl {
     bool quit = false;
 
     void work(unsigned worker) {
-        flush_denormals_to_zero();
+        const FlushDenormals flush;
         std::uint64_t seen = 0;
         std::unique_lock lock(mutex);
         for (;;) {
@@ -39,7 +39,6 @@ struct ThreadPool::Impl {
 };
 
 ThreadPool::ThreadPool(unsigned threads) : impl_(std::make_unique<Impl>()) {
-    flush_denormals_to_zero();
     for (unsigned worker = 1; worker < std::max(1u, threads); ++worker)
         impl_->threads.emplace_back([this, worker] { impl_->work(worker); });
 }
@@ -64,7 +63,10 @@ void ThreadPool::run(const std::function<void(unsigned)>& task) {
         ++impl_->generation;
     }
     impl_->start.notify_all();
-    task(0);
+    {
+        const FlushDenormals flush;
+        task(0);
+    }
     std::unique_lock lock(impl_->mutex);
     impl_->done.wait(lock, [&] { return impl_->running == 0; });
 }

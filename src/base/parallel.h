@@ -19,7 +19,8 @@ public:
 
     [[nodiscard]] unsigned size() const;
 
-    // Runs task(worker) once on each worker 0..size()-1 and waits; worker 0 is the calling thread. Not reentrant.
+    // Runs task(worker) once on each worker 0..size()-1 and waits; worker 0 is the calling thread. All flush denormals
+    // to zero while they are at it, whatever the mode of the caller. Not reentrant.
     void run(const std::function<void(unsigned worker)>& task);
 
 private:

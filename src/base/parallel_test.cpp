@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <numeric>
@@ -33,6 +34,29 @@ TEST(ThreadPool, CallerIsWorkerZero) {
     pool.run([&](unsigned worker) { ids[worker] = std::this_thread::get_id(); });
     EXPECT_EQ(ids[0], std::this_thread::get_id());
     EXPECT_NE(ids[1], std::this_thread::get_id());
+}
+
+// A product that is subnormal, seen by the compiler at run time only.
+float subnormal() {
+    volatile float tiny = 1e-30f;
+    return tiny * 1e-10f;
+}
+
+// Whatever thread made the pool and whatever thread calls it, all workers compute alike; the caller keeps its own mode.
+TEST(ThreadPool, FlushesDenormalsInItsTasksAlone) {
+#if !defined(__SSE2__)
+    GTEST_SKIP() << "denormals are flushed on x86 only";
+#endif
+    ASSERT_GT(subnormal(), 0.0f);
+    ThreadPool pool(2);
+    EXPECT_GT(subnormal(), 0.0f) << "the pool changed the mode of the thread that made it";
+    std::array<float, 2> seen{1, 1};
+    std::thread([&] { pool.run([&](unsigned worker) { seen[worker] = subnormal(); }); }).join();
+    EXPECT_EQ(seen, (std::array<float, 2>{0, 0}));
+    seen = {1, 1};
+    pool.run([&](unsigned worker) { seen[worker] = subnormal(); });
+    EXPECT_EQ(seen, (std::array<float, 2>{0, 0}));
+    EXPECT_GT(subnormal(), 0.0f) << "the pool changed the mode of its caller";
 }
 
 TEST(ThreadParallelFor, VisitsEveryItemOnce) {

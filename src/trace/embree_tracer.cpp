@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "base/check.h"
+#include "base/denormals.h"
 #include "trace/tracer.h"
 
 namespace lumel {
@@ -430,6 +431,7 @@ void EmbreeTracer::occluded(std::span<const Ray> rays, std::span<std::uint8_t> b
 
 // Embree reports its own want of memory; our index lists come on top.
 Result<std::unique_ptr<Tracer>> make_embree_tracer(const WorldGeometry& geometry, SurfaceReader surfaces, Context&) {
+    const FlushDenormals flush;
     try {
         auto tracer = std::make_unique<EmbreeTracer>(geometry, surfaces);
         if (Status status = tracer->build(); !status.ok()) return std::move(status).error();
