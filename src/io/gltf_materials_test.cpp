@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include <fstream>
 
 #include "io/image_io.h"
@@ -111,6 +113,12 @@ TEST(GltfMaterials, AppliesTextureTransforms) {
     const Vec2 turned = apply(transform({{"rotation", 1.5707963267948966}}), {1.0f, 0.25f});
     EXPECT_NEAR(turned.x, 0.25f, 1e-6f);
     EXPECT_NEAR(turned.y, -1.0f, 1e-6f);
+    // Any number of turns is an angle: a million of them and a quarter are a quarter, to the digits that 6e6 leaves.
+    const Vec2 turned_often =
+        apply(transform({{"rotation", 6283185.30717958648 + 1.57079632679489662}}), {1.0f, 0.25f});
+    EXPECT_NEAR(turned_often.x, 0.25f, 1e-6f);
+    EXPECT_NEAR(turned_often.y, -1.0f, 1e-6f);
+    for (const float number : transform({{"rotation", 1e300}})) EXPECT_LE(std::fabs(number), 1.0f);
     // Scale first, then rotation, then offset.
     const Vec2 all =
         apply(transform({{"rotation", 1.5707963267948966}, {"scale", {2, 3}}, {"offset", {5, 7}}}), {1.0f, 1.0f});

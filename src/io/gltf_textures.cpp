@@ -5,6 +5,7 @@
 
 #include "base/try.h"
 #include "io/image_io.h"
+#include "math/trig.h"
 
 namespace lumel {
 namespace {
@@ -73,7 +74,8 @@ Status TextureLoader::read_transform(const Json& json, TextureRef& ref, const st
     LUMEL_TRY(const auto offset, (numbers_or<2>(json, "offset", {0, 0}, where)));
     LUMEL_TRY(const auto scale, (numbers_or<2>(json, "scale", {1, 1}, where)));
     LUMEL_TRY(const double rotation, number_or(json, "rotation", 0.0, where));
-    const double c = std::cos(rotation), s = std::sin(rotation);
+    constexpr double kTurn = 6.283185307179586476925;
+    const auto [s, c] = sincos_radians(std::fmod(rotation, kTurn));  // fmod is exact
     const double m[6] = {c * scale[0], s * scale[1], offset[0], -s * scale[0], c * scale[1], offset[1]};
     for (std::size_t i = 0; i < 6; ++i) ref.transform[i] = static_cast<float>(m[i]);
     return success();

@@ -23,7 +23,8 @@ Status check_keys(const Json& object, std::initializer_list<std::string_view> kn
     if (!object.is_object()) return invalid(where, "must be an object");
     for (auto member = object.begin(); member != object.end(); ++member) {
         const auto is_member = [&](std::string_view key) {
-            return member.key() == key || member.key() == british(key);
+            const std::string other = british(key);
+            return member.key() == key || (!other.empty() && member.key() == other);
         };
         if (std::any_of(known.begin(), known.end(), is_member)) continue;
         std::string list;

@@ -221,7 +221,7 @@ TEST_P(SidecarFault, NamesTheKey) {
 INSTANTIATE_TEST_SUITE_P(
     All, SidecarFault,
     testing::Values(
-        Fault{"no valid JSON", "{"}, Fault{"must be an object", "[]"},
+        Fault{"no valid JSON", "{"}, Fault{"must be an object", "[]"}, Fault{"unknown key ''", R"({"": {}})"},
         Fault{"unknown key 'lihgts'", R"({"lihgts": {}})"}, Fault{"known keys: ", R"({"lihgts": {}})"},
         Fault{"version 2", R"({"version": 2})"},
         Fault{"lights 'bulb': unknown key 'raduis'", R"({"lights": {"bulb": {"raduis": 1}}})"},
