@@ -1,6 +1,6 @@
 // Random numbers as a pure function of (seed, texel, sample, dimension): Owen-scrambled Sobol points.
 // Based on: Burley 2020, "Practical Hash-based Owen Scrambling" (JCGT 9:4); Joe and Kuo 2008 for the direction numbers.
-// Dimensions beyond the fourth are padded: groups of four, each an independently shuffled and scrambled sequence.
+// Dimensions beyond the second are padded: pairs, each an independently shuffled and scrambled sequence.
 #pragma once
 
 #include <cstdint>
