@@ -1,6 +1,7 @@
 #include "light/light_set.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 #include "base/check.h"
@@ -83,9 +84,12 @@ void LightSet::add_shape(Shape shape, std::uint32_t light) {
 }
 
 void LightSet::add_emissive_triangles() {
-    for (std::uint32_t triangle = 0; triangle < geometry_->triangle_count(); ++triangle)
-        if (is_emitter(geometry_->triangles[triangle]) && geometry_->area(triangle) > 0.0f)
-            triangles_.push_back(triangle);
+    for (std::uint32_t triangle = 0; triangle < geometry_->triangle_count(); ++triangle) {
+        if (!is_emitter(geometry_->triangles[triangle])) continue;
+        // Areas that single precision cannot hold are left to the rays that hit them.
+        const float area = geometry_->area(triangle);
+        if (area > 0.0f && std::isfinite(area)) triangles_.push_back(triangle);
+    }
     if (triangles_.empty()) return;
     local_of_triangle_.assign(geometry_->triangle_count(), kNone);
     for (std::size_t i = 0; i < triangles_.size(); ++i)

@@ -190,6 +190,19 @@ TEST(LightSet, EmissiveSamplesNameTheirTriangle) {
     EXPECT_EQ(f.lights->emissive(0, 0.2f, 0.2f, {0, -1, 0}, 1, false).radiance, Vec3{});
 }
 
+TEST(LightSet, PowersBeyondAllMeasureDoNotBreakTheChoice) {
+    test::WorldBuilder builder;
+    Material material;
+    material.emission = {1e12f, 1e12f, 1e12f};
+    const auto bright = builder.add_material(material);
+    builder.add_quad({0, 1, 0}, {1e20f, 0, 0}, {0, 0, 1e20f}, bright);  // of infinite area
+    builder.add_quad({0, 2, 0}, {1e15f, 0, 0}, {0, 0, 1e15f}, bright);  // area times radiance is infinite in float
+    builder.scene().lights = {point_light({0, 3, 0}, {1, 1, 1})};
+    const Fixture f(builder);
+    for (const float u : {0.0f, 0.5f, 0.9999999f})
+        EXPECT_GE(f.lights->sample_local({0, 0, 0}, u, {0.3f, 0.4f}, false).distance, 0.0f);
+}
+
 TEST(LightSet, OccludersDoNotEmit) {
     test::WorldBuilder builder;
     Material material;
