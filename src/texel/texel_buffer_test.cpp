@@ -85,6 +85,21 @@ TEST(TexelBuffer, SubtexelPointsAreANet) {
     }
 }
 
+// Bakes of few samples use a prefix: its 2^k points lie in different boxes of every shape 2^-i x 2^-(k-i).
+TEST(TexelBuffer, PrefixesOfTheSubtexelPointsAreNetsToo) {
+    for (int k = 1; k < 6; ++k)
+        for (int split = 0; split <= k; ++split) {
+            std::uint64_t seen = 0;
+            const auto columns = static_cast<float>(1 << split), rows = static_cast<float>(1 << (k - split));
+            for (std::uint32_t s = 0; s < (1u << k); ++s) {
+                const Vec2 p = subtexel_point(s);
+                seen |=
+                    std::uint64_t{1} << static_cast<int>(std::floor(p.x * columns) + columns * std::floor(p.y * rows));
+            }
+            EXPECT_EQ(seen, (std::uint64_t{1} << (1 << k)) - 1) << (1 << k) << " points, " << columns << " columns";
+        }
+}
+
 TEST(TexelBuffer, AlignedQuadHasWholeTexels) {
     FlatPage page;
     page.add_quad({2, 3}, {5, 0}, {0, 4});

@@ -1,0 +1,109 @@
+// The hemisphere of a texel (docs/conventions.md): where its rays may go, and what its light is divided by.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "baked_page.h"
+
+namespace lumel {
+namespace {
+
+// A sphere of 2 m seen from inside, smooth-shaded, closed but coarse: 12 x 8 segments.
+void add_hollow_sphere(Mesh& mesh) {
+    constexpr std::uint32_t kAround = 12, kDown = 8;
+    for (std::uint32_t v = 0; v <= kDown; ++v)
+        for (std::uint32_t u = 0; u <= kAround; ++u) {
+            const double phi = 2.0 * 3.14159265358979 * (u % kAround) / kAround, theta = 3.14159265358979 * v / kDown;
+            const double sine = v == 0 || v == kDown ? 0.0 : std::sin(theta);
+            const Vec3 n{static_cast<float>(sine * std::cos(phi)), static_cast<float>(std::cos(theta)),
+                         static_cast<float>(sine * std::sin(phi))};
+            mesh.positions.push_back(n * 2.0f);
+            mesh.normals.push_back(-n);
+            mesh.uv0.push_back({});
+        }
+    const auto at = [](std::uint32_t u, std::uint32_t v) { return v * (kAround + 1) + u; };
+    for (std::uint32_t v = 0; v < kDown; ++v)
+        for (std::uint32_t u = 0; u < kAround; ++u) {
+            if (v > 0) mesh.triangles.push_back({at(u, v), at(u, v + 1), at(u + 1, v)});
+            if (v + 1 < kDown) mesh.triangles.push_back({at(u + 1, v), at(u, v + 1), at(u + 1, v + 1)});
+        }
+}
+
+// The vertex normal's hemisphere reaches below the facets. Rays that go there meet the facet they start on; they must
+// not leave through it. The orientation of the triangles is checked by the count: seen from behind, none is valid.
+TEST(Hemisphere, NoLightEntersAClosedSmoothHollow) {
+    test::SceneBuilder builder;
+    builder.object("hollow", builder.material({0.5f, 0.5f, 0.5f}), add_hollow_sphere);
+    Light& sun = builder.light(LightShape::sun);
+    sun.direction = normalize(Vec3{0.3f, -1.0f, 0.2f});
+    sun.intensity = {1000, 1000, 1000};
+    BakeOptions options;
+    options.texels_per_metre = 6;
+    options.samples = 64;
+    options.sky.color = Vec3{1, 1, 1};
+    Scene scene = builder.build();
+    ASSERT_TRUE(apply_lighting(scene, options).ok());
+    const auto texels = test::bake_texels(scene, options);
+    ASSERT_GT(texels.size(), 1000u);
+    for (const test::BakedTexel& texel : texels) ASSERT_EQ(texel.irradiance, Vec3{}) << texel.x << " " << texel.y;
+}
+
+// Half of what this floor could see is the back of a wall: void paths. The same even sky, once met by rays alone and
+// once as a map, sampled by both ways, must light it alike.
+TEST(Hemisphere, BothWaysToSampleTheSkyHaveOneNormaliser) {
+    const auto mean = [](bool as_map) {
+        test::SceneBuilder builder;
+        const std::uint32_t grey = builder.material({0.5f, 0.5f, 0.5f});
+        builder.object("floor", grey, [](Mesh& mesh) { test::add_quad(mesh, {-2, 0, 2}, {2, 0, 0}, {0, 0, -4}); });
+        builder.object(
+            "wall", grey,
+            [](Mesh& mesh) {
+                test::add_quad(mesh, {0, 0, 20}, {0, 0, -40}, {0, 20, 0});
+            },
+            {}, NodeClass::occluder);
+        Scene scene = builder.build();
+        if (as_map) {
+            scene.sky.map = SkyMap{16, 8, std::vector<Vec3>(16 * 8, Vec3{1, 1, 1})};
+        } else {
+            scene.sky.color = {1, 1, 1};
+        }
+        BakeOptions options;
+        options.texels_per_metre = 8;
+        options.samples = 1024;
+        const auto texels = test::bake_texels(scene, options);
+        double sum = 0.0;
+        for (const test::BakedTexel& texel : texels) sum += texel.irradiance.x;
+        return sum / static_cast<double>(texels.size());
+    };
+    const double by_rays = mean(false), by_both = mean(true);
+    EXPECT_GT(by_rays, 0.9);
+    // Some 500 texels of 1024 samples, each within a few percent: the means are good to some 1e-4.
+    EXPECT_NEAR(by_both / by_rays, 1.0, 2e-3);
+}
+
+// Twice the direct light has twice its standard error; light that the files leave out has no part in it.
+TEST(Hemisphere, TheStatedErrorFollowsScalesAndInclude) {
+    const auto error = [](float direct_scale, bool indirect) {
+        test::SceneBuilder builder;
+        builder.object("box", builder.material({0.5f, 0.5f, 0.5f}, {1, 1, 1}), [](Mesh& mesh) {
+            test::add_box(mesh, {-1, 0, -1}, {1, 1, 1}, true);
+        });
+        builder.object("lid", builder.material({0.1f, 0.9f, 0.5f}), [](Mesh& mesh) {
+            test::add_box(mesh, {-0.5f, 0.2f, -0.5f}, {0.5f, 0.5f, 0.5f}, false);
+        });
+        BakeOptions options;
+        options.texels_per_metre = 4;
+        options.samples = 64;
+        options.direct_scale = direct_scale;
+        options.include.indirect = indirect;
+        const auto texels = test::bake_texels(builder.build(), options);
+        double sum = 0.0;
+        for (const test::BakedTexel& texel : texels) sum += static_cast<double>(texel.error.x);
+        return sum / static_cast<double>(texels.size());
+    };
+    EXPECT_NEAR(error(10, false) / error(1, false), 10.0, 1e-3);
+    EXPECT_GT(error(1, true), 1.05 * error(1, false));
+}
+
+}  // namespace
+}  // namespace lumel
