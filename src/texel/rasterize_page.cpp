@@ -184,6 +184,7 @@ private:
         out.x.push_back(static_cast<std::uint16_t>(x));
         out.y.push_back(static_cast<std::uint16_t>(y));
         out.valid.push_back(owner.valid);
+        out.chart.push_back(owner.chart);
         for (const std::uint32_t triangle : claimants)
             if (!owner.contested || chart_of(triangle) == owner.chart) out.triangles.push_back(triangle);
         const std::span triangles = std::span(std::as_const(out.triangles)).subspan(out.first_triangle.back());
@@ -243,6 +244,7 @@ private:
         out.x.reserve(texels);
         out.y.reserve(texels);
         out.valid.reserve(texels);
+        out.chart.reserve(texels);
         out.position.reserve(texels);
         out.normal.reserve(texels);
         out.world_size.reserve(texels);
@@ -264,6 +266,7 @@ private:
         add(out.x, band.x);
         add(out.y, band.y);
         add(out.valid, band.valid);
+        add(out.chart, band.chart);
         add(out.position, band.position);
         add(out.normal, band.normal);
         add(out.world_size, band.world_size);

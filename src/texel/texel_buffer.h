@@ -31,6 +31,7 @@ struct TexelBuffer {
     std::vector<std::uint64_t> valid;           // bit s: Hammersley point s lies in a triangle of this texel
     std::vector<std::uint32_t> first_triangle;  // per texel into `triangles`, plus one past the end
     std::vector<std::uint32_t> triangles;       // world triangles of the owner that overlap the texel, ascending
+    std::vector<std::uint32_t> chart;           // the owner: index into Atlas::placements, so one per instance
     std::vector<Vec3> position;                 // of the representative point: the centre, or the sample nearest to it
     std::vector<Vec3> normal;                   // vertex normal there
     std::vector<float> world_size;              // metres across a texel: the longer edge of its parallelogram

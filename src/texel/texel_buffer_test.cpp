@@ -230,12 +230,37 @@ TEST(TexelBuffer, SharedTexelsGoToTheChartWithMostOfThem) {
         const std::uint32_t owner = page.chart[t.triangles[t.first_triangle[i]]];
         const std::uint32_t expected = t.y[i] >= 10 ? 2u : (t.x[i] < 5 ? 1u : 0u);
         EXPECT_EQ(owner, expected);
+        EXPECT_EQ(t.chart[i], expected);
         EXPECT_EQ(std::popcount(t.valid[i]), t.x[i] == 5 && t.y[i] < 8 ? (owner == 0 ? 48 : 16)
                                              : t.x[i] == 8             ? 16
                                                                        : 64);
     }
     ASSERT_EQ(baked.context.diagnostics.all().size(), 1u);
     EXPECT_EQ(baked.context.diagnostics.all()[0].examples[0], "page 0, texel 5, 2: charts of 'node 0' and 'node 0'");
+}
+
+// Two instances of one mesh have the same charts; their texels have owners of their own: the placements.
+TEST(TexelBuffer, OwnersOfInstancesDiffer) {
+    FlatPage page;
+    page.add_quad({2, 2}, {3, 0}, {0, 4}, 0);
+    page.add_quad({6, 2}, {3, 0}, {0, 4}, 1);
+    BakedPage baked(page);
+    baked.world.scene.instances.push_back(baked.world.scene.instances[0]);
+    const auto triangles = static_cast<std::uint32_t>(baked.world.geometry.triangles.size());
+    for (std::uint32_t t = 0; t < triangles; ++t) {
+        WorldTriangle copy = baked.world.geometry.triangles[t];
+        copy.instance = 1;
+        baked.world.geometry.triangles.push_back(copy);
+    }
+    baked.atlas.first_placement = {0, 2, 4};
+    for (int c = 0; c < 2; ++c) baked.atlas.placements.push_back({0, {1, 1}, {0, 8}});
+    const auto by_page = triangles_by_page(baked.world.scene, baked.world.geometry, baked.charts, baked.atlas);
+    auto texels = rasterize_page(baked.world.scene, baked.world.geometry, baked.charts, baked.atlas, 0, by_page[0],
+                                 baked.context);
+    ASSERT_TRUE(texels.ok());
+    ASSERT_EQ(texels->size(), 48u);
+    for (std::size_t i = 0; i < texels->size(); ++i)
+        EXPECT_EQ(texels->chart[i], (texels->y[i] < 8 ? 0u : 2u) + (texels->x[i] < 6 ? 0u : 1u));
 }
 
 // Charts that only meet along a line between texels share none.
@@ -266,6 +291,7 @@ TEST(TexelBuffer, ThreadsDoNotMatter) {
     const TexelBuffer &a = one.texels, &b = three.texels;
     ASSERT_GT(a.size(), 10000u);
     EXPECT_TRUE(equal_bits(a.x, b.x) && equal_bits(a.y, b.y) && equal_bits(a.valid, b.valid));
+    EXPECT_TRUE(equal_bits(a.chart, b.chart));
     EXPECT_TRUE(equal_bits(a.first_triangle, b.first_triangle) && equal_bits(a.triangles, b.triangles));
     EXPECT_TRUE(equal_bits(a.position, b.position) && equal_bits(a.normal, b.normal));
     EXPECT_TRUE(equal_bits(a.world_size, b.world_size) && equal_bits(a.texel_at, b.texel_at));
