@@ -589,6 +589,16 @@ void PathIntegrator::gather_texel(std::span<const SamplePoint> points, std::uint
     sink.store(out, index);
 }
 
+void RadianceSums::reserve(std::size_t texels) {
+    layers.reserve(texels);
+    variance.reserve(texels);
+    sky_visibility.reserve(texels);
+    ambient_occlusion.reserve(texels);
+    bent_normal.reserve(texels);
+    count.reserve(texels);
+    traced.reserve(texels);
+}
+
 void RadianceSums::resize(std::size_t texels) {
     layers.resize(texels);
     variance.resize(texels);
@@ -601,9 +611,10 @@ void RadianceSums::resize(std::size_t texels) {
 
 Result<RadianceSums> gather_page(const TexelBuffer& texels, const ChartSet& charts, const Atlas& atlas,
                                  const Transport& transport, const PathOptions& options, std::size_t first,
-                                 std::size_t count, Context& context) {
+                                 std::size_t count, Context& context, std::size_t room) {
     LUMEL_CHECK(first + count <= texels.size(), first, count, texels.size());
     RadianceSums sums;
+    sums.reserve(room);
     sums.resize(texels.size());
     const PathIntegrator integrator(transport, options);
     std::vector<PathIntegrator::WorkspacePtr> workspaces(context.threads());

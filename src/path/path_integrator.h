@@ -100,8 +100,9 @@ private:
 
 // Stage: all texels of a page. `first`, `count`: the range of texels to do (the rest of the sums stay zero); any split
 // gives the same bits. Error: cancelled.
+// `room`: texels that the sums can grow to without being moved.
 Result<RadianceSums> gather_page(const TexelBuffer& texels, const ChartSet& charts, const Atlas& atlas,
                                  const Transport& transport, const PathOptions& options, std::size_t first,
-                                 std::size_t count, Context& context);
+                                 std::size_t count, Context& context, std::size_t room = 0);
 
 }  // namespace lumel
