@@ -10,6 +10,7 @@
 #include "bake/memory.h"
 #include "base/denormals.h"
 #include "base/try.h"
+#include "chart/chart_picture.h"
 #include "chart/chart_set.h"
 #include "light/light_set.h"
 #include "math/normal_quantile.h"
@@ -222,7 +223,8 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
         }
         {
             const StageTimer timer(report, "trace");
-            LUMEL_TRY(sums, gather_page(texels, charts, atlas, transport, path, 0, texels.size(), context));
+            const std::size_t room = texels_with_rings(texels, options.dilate);
+            LUMEL_TRY(sums, gather_page(texels, charts, atlas, transport, path, 0, texels.size(), context, room));
             report.trace_wall_seconds += timer.seconds();
         }
         for (const std::uint32_t traced : sums.traced) report.samples += traced;
@@ -233,7 +235,8 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
         }
         {
             const StageTimer timer(report, "post");
-            map = finish_page(texels, std::move(sums), std::move(surface), options.dilate);
+            const std::vector<std::uint32_t> readers = chart_ids(scene, charts, atlas, page);
+            LUMEL_TRY(map, finish_page(texels, std::move(sums), std::move(surface), readers, options.dilate, context));
         }
         report.pages.push_back(page_report(map, texels));
         totals.add(map, path.included);

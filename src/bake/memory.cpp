@@ -13,8 +13,16 @@ namespace {
 constexpr std::uint64_t kTracerBytesPerTriangle = 200;
 constexpr std::uint64_t kProgramBytes = 64u << 20;  // code, libraries, allocator slack
 
-// One covered texel: RadianceSums entry, TexelBuffer entry and its share of triangle lists.
-constexpr std::uint64_t kBytesPerTexel = kLayerCount * sizeof(LayerMoments) + 4 * sizeof(Vec3) + 4 * sizeof(float) + 80;
+// One texel of a page that is covered all over, which is the most there is: dilated texels take no more than covered
+// ones, and the sums have room for them from the start, so that no array is held twice while it grows.
+constexpr std::uint64_t kSumsBytes =
+    kLayerCount * sizeof(LayerMoments) + 2 * sizeof(Vec3) + 2 * sizeof(float) + 2 * sizeof(std::uint32_t);
+// x, y, valid points, owner, position, normal, size; start and share of the triangle lists.
+constexpr std::uint64_t kTexelBufferBytes = 4 + 8 + 4 + 2 * sizeof(Vec3) + 4 + 4 + 12;
+// Albedo, emission, coverage, chart; queue of the fill or guides of the denoiser, of which one lives at a time.
+constexpr std::uint64_t kLightmapBytes = 2 * sizeof(Vec3) + 1 + 4 + 2 * sizeof(Vec3);
+constexpr std::uint64_t kBytesPerTexel = kSumsBytes + kTexelBufferBytes + kLightmapBytes;
+constexpr std::uint64_t kBytesPerPixel = 3 * sizeof(std::uint32_t);  // texel_at of both, readers
 
 }  // namespace
 
@@ -32,7 +40,7 @@ std::uint64_t scene_memory(const Scene& scene, const WorldGeometry& geometry) {
 
 std::uint64_t page_memory(const AtlasPage& page) {
     const std::uint64_t texels = std::uint64_t{page.width} * page.height;
-    return texels * (kBytesPerTexel + 2 * sizeof(std::uint32_t));
+    return texels * (kBytesPerTexel + kBytesPerPixel);
 }
 
 std::uint64_t largest_page_memory(const Atlas& atlas) {

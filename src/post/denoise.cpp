@@ -15,6 +15,7 @@ namespace lumel {
 namespace {
 
 constexpr float kNormalCosine = 0.8660254f;  // 30 degrees
+constexpr float kPlaneOffset = 0.5f;         // from each other's tangent plane, in texels
 constexpr float kReach = 1.8f;               // how much farther apart in the world than in texels neighbours may be
 constexpr std::size_t kRowsPerBand = 16;     // at least the largest radius
 
@@ -79,8 +80,13 @@ private:
     }
 
     [[nodiscard]] bool are_neighbours(std::size_t i, std::size_t j, int dx, int dy) const {
+        if (texels_.chart[i] != texels_.chart[j]) return false;
         if (dot(texels_.normal[i], texels_.normal[j]) < kNormalCosine) return false;
         const Vec3 d = texels_.position[j] - texels_.position[i];
+        const auto off_plane = [&](std::size_t t) {
+            return std::fabs(dot(texels_.normal[t], d)) > kPlaneOffset * texels_.world_size[t];
+        };
+        if (off_plane(i) || off_plane(j)) return false;
         const float reach = kReach * std::max(texels_.world_size[i], texels_.world_size[j]);
         return dot(d, d) <= reach * reach * static_cast<float>(dx * dx + dy * dy);
     }
@@ -105,6 +111,7 @@ private:
                 const std::uint32_t p = at(texels_.x[i] + px, texels_.y[i] + py);
                 const std::uint32_t q = at(texels_.x[i] + dx + px, texels_.y[i] + dy + py);
                 if (p == kNone || q == kNone) continue;
+                if (texels_.chart[p] != texels_.chart[i] || texels_.chart[q] != texels_.chart[i]) continue;
                 sum += distance(guides_[p], guides_[q]);
                 count += 1.0f;
             }
@@ -116,10 +123,13 @@ private:
 
     void read_guides() {
         guides_.resize(texels_.size());
+        std::size_t valid = 0;
+        for (std::size_t i = 0; i < guides_.size(); ++i) valid += sums_.valid(i);
         Vec3 mean{};
         for (std::size_t i = 0; i < guides_.size(); ++i) {
+            if (!sums_.valid(i)) continue;
             for (const LayerMoments& layer : sums_.layers[i]) guides_[i].irradiance += layer.irradiance;
-            mean += guides_[i].irradiance * (1.0f / static_cast<float>(guides_.size()));
+            mean += guides_[i].irradiance * (1.0f / static_cast<float>(valid));
         }
         // Differences below a hundredth of the page's mean are of no interest.
         for (std::size_t c = 0; c < 3; ++c) floor_[c] = std::max(1e-30f, 1e-4f * mean[c] * mean[c]);
@@ -172,6 +182,7 @@ void write_back(const Band& band, std::size_t first, RadianceSums& sums) {
 Status denoise(const TexelBuffer& texels, const DenoiseOptions& options, RadianceSums& sums, Context& context) {
     LUMEL_CHECK(options.radius <= kRowsPerBand, options.radius);
     LUMEL_CHECK(sums.size() == texels.size(), sums.size(), texels.size());
+    LUMEL_CHECK(texels.chart.size() == texels.size(), texels.chart.size(), texels.size());
     const Denoiser denoiser(texels, options, sums);
     Band now, before;
     std::size_t first_before = 0;

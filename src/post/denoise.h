@@ -1,4 +1,4 @@
-// Smooths the noise of a page: non-local means over texels that are neighbours on the surface too.
+// Smooths the noise of a page: non-local means over texels that are neighbours by chart, plane, normal and distance.
 #pragma once
 
 #include "lumel/context.h"
@@ -14,8 +14,9 @@ struct DenoiseOptions {
 };
 
 // Replaces the layers of each valid texel by a weighted mean over its window: one weight per neighbour for all layers
-// and coefficients, so that SH vectors that are valid stay valid. Neighbours are texels that a walk over the surface
-// reaches: normals within 30 degrees, and as far apart in the world as they are in texels. Weights compare 3x3 patches
+// and coefficients, so that SH vectors that are valid stay valid. Neighbours are valid texels of the same chart
+// whose normals are within 30 degrees, which lie within half a texel of each other's tangent planes, and which are at
+// most 1.8 times as far apart in the world as in texels. Weights compare 3x3 patches
 // of the total irradiance, relative to the variance that the page states. Variance, counts, sky visibility and
 // occlusion stay as they were sampled. Any number of threads gives the same bits. Error: cancelled.
 Status denoise(const TexelBuffer& texels, const DenoiseOptions& options, RadianceSums& sums, Context& context);

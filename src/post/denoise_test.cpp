@@ -29,6 +29,7 @@ struct NoisyPage {
                 texels.position.push_back({static_cast<float>(x), 0, -static_cast<float>(y)});
                 texels.normal.push_back({0, 1, 0});
                 texels.world_size.push_back(1.0f);
+                texels.chart.push_back(0);
                 truth.push_back(light(x, y));
             }
         sums.resize(texels.size());
@@ -84,6 +85,41 @@ TEST(Denoise, DoesNotMixAcrossAFoldOrAGap) {
         const Vec3 expected = x < 8 ? Vec3{1, 0, 0} : x < 16 ? Vec3{0, 1, 0} : Vec3{0, 0, 1};
         EXPECT_LT(length(page.sums.layers[i][0].irradiance - expected), 1e-5f) << x;
     }
+}
+
+// Left and right differ in `part(page, i)` alone; their light is within noise of each other and must not mix.
+template <class Part>
+void expect_parted(Part&& part) {
+    NoisyPage page(16, 8, 0.5f, [](int, int) { return 1.0f; });
+    const auto expected = [&](std::size_t i) { return page.texels.x[i] < 8 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}; };
+    for (std::size_t i = 0; i < page.texels.size(); ++i) {
+        for (LayerMoments& layer : page.sums.layers[i]) layer = {};
+        page.sums.layers[i][0].irradiance = expected(i);
+        if (page.texels.x[i] >= 8) part(page, i);
+    }
+    ASSERT_TRUE(run(page).ok());
+    for (std::size_t i = 0; i < page.texels.size(); ++i)
+        EXPECT_LT(length(page.sums.layers[i][0].irradiance - expected(i)), 1e-5f) << page.texels.x[i];
+}
+
+// A step less high than a texel is wide: normals and distances (1.25 texels at most) say nothing.
+TEST(Denoise, DoesNotMixParallelPlanes) {
+    expect_parted([](NoisyPage& page, std::size_t i) { page.texels.position[i].y += 0.75f; });
+}
+
+TEST(Denoise, DoesNotMixChartsOfOnePlane) {
+    expect_parted([](NoisyPage& page, std::size_t i) { page.texels.chart[i] = 1; });
+}
+
+// One invalid texel of enormous light does not raise the floor below which differences count for nothing.
+TEST(Denoise, InvalidTexelsDoNotSetTheFloor) {
+    NoisyPage page(32, 16, 0.0f, [](int x, int) { return x < 16 ? 1.0f : 2.0f; });
+    page.sums.count[5] = 0;
+    page.sums.layers[5][1].irradiance = {1e6f, 1e6f, 1e6f};
+    page.truth[5] = 1e6f;
+    ASSERT_TRUE(run(page).ok());
+    // Noiseless light whose steps are far above a hundredth of the mean: nothing may move but by rounding.
+    EXPECT_LT(page.mean_squared_error(), 1e-10);
 }
 
 TEST(Denoise, WeighsAllCoefficientsAlikeAndLeavesInvalidTexelsAlone) {

@@ -1,9 +1,11 @@
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <utility>
 #include <vector>
 
 #include "base/check.h"
+#include "base/try.h"
 #include "post/lightmap.h"
 
 namespace lumel {
@@ -70,53 +72,104 @@ struct Pixel {
     std::uint32_t x, y;
 };
 
-// Mean of the 3x3 neighbours that have a value.
-Average average_around(const Lightmap& map, Pixel p) {
+constexpr std::size_t kLookEvery = 4096;  // texels between two looks at whether the bake was cancelled
+
+Error cancelled_error() { return {ErrorCode::cancelled, "the bake was cancelled", {}, {}}; }
+
+// Mean of the 3x3 neighbours of one chart that have a value.
+Average average_around(const Lightmap& map, Pixel p, std::uint32_t chart) {
     Average average;
     for_each_neighbour(map, p.x, p.y, [&](std::uint32_t texel) {
-        if (map.coverage[texel] != Coverage::none) average.add(map, texel);
+        if (map.coverage[texel] != Coverage::none && map.chart[texel] == chart) average.add(map, texel);
     });
     return average;
 }
 
-// Invalid texels take the mean of their valid neighbours, ring by ring inwards. Their surface is their own. A ring is
-// marked only when all of it has been stored, so that it sees the ring before and not itself.
-void fill_invalid(Lightmap& map, const TexelBuffer& buffer) {
-    std::vector<Pixel> open;
-    for (std::size_t i = 0; i < buffer.size(); ++i)
-        if (map.coverage[i] == Coverage::none) open.push_back({buffer.x[i], buffer.y[i]});
-    const auto texel = [&](Pixel p) { return map.texel_at[std::size_t{p.y} * map.width + p.x]; };
-    while (!open.empty()) {
-        std::vector<std::uint32_t> ring;
-        for (const Pixel& p : open) {
-            const Average average = average_around(map, p);
-            if (average.empty()) continue;
-            average.store_light(map.texels, texel(p));
-            ring.push_back(texel(p));
+// Invalid texels take the mean of those neighbours of their chart that have a value, ring by ring inwards. Their
+// surface is their own. A ring is marked only when all of it has been stored, so that it sees the ring before and not
+// itself.
+class Filler {
+public:
+    Filler(Lightmap& map, const TexelBuffer& buffer) : map_(map), buffer_(buffer), queued_(buffer.size()) {}
+
+    Status run(Context& context) {
+        std::vector<std::uint32_t> ring, next;
+        for (std::uint32_t i = 0; i < buffer_.size(); ++i)
+            if (map_.coverage[i] != Coverage::none) queue_around(i, ring);
+        while (!ring.empty()) {
+            for (std::size_t k = 0; k < ring.size(); ++k) {
+                if (k % kLookEvery == 0 && context.cancelled()) return cancelled_error();
+                const std::uint32_t i = ring[k];
+                average_around(map_, pixel(i), map_.chart[i]).store_light(map_.texels, i);
+            }
+            for (const std::uint32_t i : ring) map_.coverage[i] = Coverage::filled;
+            next.clear();
+            for (const std::uint32_t i : ring) queue_around(i, next);
+            std::swap(ring, next);
         }
-        if (ring.empty()) return;
-        for (const std::uint32_t t : ring) map.coverage[t] = Coverage::filled;
-        std::erase_if(open, [&](const Pixel& p) { return map.coverage[texel(p)] != Coverage::none; });
+        return success();
     }
+
+private:
+    [[nodiscard]] Pixel pixel(std::uint32_t i) const { return {buffer_.x[i], buffer_.y[i]}; }
+
+    // The open neighbours of texel i that can take its light and do not wait yet.
+    void queue_around(std::uint32_t i, std::vector<std::uint32_t>& ring) {
+        for_each_neighbour(map_, buffer_.x[i], buffer_.y[i], [&](std::uint32_t j) {
+            if (map_.coverage[j] != Coverage::none || map_.chart[j] != map_.chart[i] || queued_[j] != 0) return;
+            queued_[j] = 1;
+            ring.push_back(j);
+        });
+    }
+
+    Lightmap& map_;
+    const TexelBuffer& buffer_;
+    std::vector<std::uint8_t> queued_;
+};
+
+// The chart whose light an empty pixel takes; kNone where no neighbour has any.
+std::uint32_t owner_of(const Lightmap& map, Pixel p, std::uint32_t reader) {
+    std::array<std::uint32_t, 8> charts{};
+    std::size_t count = 0;
+    for_each_neighbour(map, p.x, p.y, [&](std::uint32_t texel) {
+        if (map.coverage[texel] != Coverage::none) charts[count++] = map.chart[texel];
+    });
+    const std::span beside = std::span(charts).first(count);
+    std::uint32_t owner = kNone;
+    std::ptrdiff_t most = 0;
+    for (const std::uint32_t chart : beside) {
+        if (chart == reader) return reader;
+        const std::ptrdiff_t n = std::ranges::count(beside, chart);
+        if (n > most || (n == most && chart < owner)) {
+            most = n;
+            owner = chart;
+        }
+    }
+    return owner;
 }
 
-// One ring of new texels around all that have a value.
-void dilate_once(Lightmap& map) {
+// One ring of new texels around all that have a value. False: cancelled.
+bool dilate_once(Lightmap& map, std::span<const std::uint32_t> readers, Context& context) {
     std::vector<Pixel> ring;
-    for (std::uint32_t y = 0; y < map.height; ++y)
-        for (std::uint32_t x = 0; x < map.width; ++x) {
-            if (map.texel_at[std::size_t{y} * map.width + x] != kNone) continue;
-            bool touches = false;
-            for_each_neighbour(map, x, y, [&](std::uint32_t t) { touches |= map.coverage[t] != Coverage::none; });
-            if (touches) ring.push_back({x, y});
-        }
     const std::size_t first = map.texels.size();
+    for (std::uint32_t y = 0; y < map.height; ++y) {
+        if (context.cancelled()) return false;
+        for (std::uint32_t x = 0; x < map.width; ++x) {
+            const std::size_t at = std::size_t{y} * map.width + x;
+            if (map.texel_at[at] != kNone) continue;
+            const std::uint32_t owner = owner_of(map, {x, y}, readers.empty() ? kNone : readers[at]);
+            if (owner == kNone) continue;
+            ring.push_back({x, y});
+            map.chart.push_back(owner);
+        }
+    }
     map.texels.resize(first + ring.size());
     map.surface.albedo.resize(first + ring.size());
     map.surface.emission.resize(first + ring.size());
     map.coverage.resize(first + ring.size(), Coverage::none);
     for (std::size_t k = 0; k < ring.size(); ++k) {
-        const Average average = average_around(map, ring[k]);
+        if (k % kLookEvery == 0 && context.cancelled()) return false;
+        const Average average = average_around(map, ring[k], map.chart[first + k]);
         average.store_light(map.texels, first + k);
         average.store_surface(map.surface, first + k);
     }
@@ -124,12 +177,48 @@ void dilate_once(Lightmap& map) {
         map.coverage[first + k] = Coverage::dilated;
         map.texel_at[std::size_t{ring[k].y} * map.width + ring[k].x] = static_cast<std::uint32_t>(first + k);
     }
+    return true;
+}
+
+// Room for all rings at once: growing ring by ring would hold the old and the new array each time.
+void reserve(Lightmap& map, std::size_t texels) {
+    map.texels.reserve(texels);
+    map.surface.albedo.reserve(texels);
+    map.surface.emission.reserve(texels);
+    map.coverage.reserve(texels);
+    map.chart.reserve(texels);
 }
 
 }  // namespace
 
-Lightmap finish_page(const TexelBuffer& buffer, RadianceSums sums, TexelSurface surface, std::uint32_t rings) {
+// Square rings: first each row grows sideways, then a window of rows slides down the page.
+std::size_t texels_with_rings(const TexelBuffer& buffer, std::uint32_t rings) {
+    const std::size_t width = buffer.width, height = buffer.height;
+    const std::size_t reach = std::min<std::size_t>(rings, std::max(width, height));
+    std::vector<std::uint8_t> wide(width * height);
+    for (std::size_t i = 0; i < buffer.size(); ++i) {
+        const std::size_t x = buffer.x[i], row = buffer.y[i] * width;
+        const std::size_t low = x > reach ? x - reach : 0, high = std::min(x + reach + 1, width);
+        std::fill(wide.begin() + static_cast<std::ptrdiff_t>(row + low),
+                  wide.begin() + static_cast<std::ptrdiff_t>(row + high), std::uint8_t{1});
+    }
+    std::vector<std::uint32_t> in_window(width);
+    std::size_t count = 0;
+    for (std::size_t y = 0; y < height + reach; ++y) {
+        for (std::size_t x = 0; x < width; ++x) {
+            if (y < height) in_window[x] += wide[y * width + x];
+            if (y > 2 * reach) in_window[x] -= wide[(y - 2 * reach - 1) * width + x];
+            count += y >= reach && in_window[x] > 0;
+        }
+    }
+    return count;
+}
+
+Result<Lightmap> finish_page(const TexelBuffer& buffer, RadianceSums sums, TexelSurface surface,
+                             std::span<const std::uint32_t> readers, std::uint32_t rings, Context& context) {
     LUMEL_CHECK(sums.size() == buffer.size(), sums.size(), buffer.size());
+    LUMEL_CHECK(buffer.chart.size() == buffer.size(), buffer.chart.size(), buffer.size());
+    LUMEL_CHECK(readers.empty() || readers.size() == buffer.texel_at.size(), readers.size(), buffer.texel_at.size());
     Lightmap map;
     map.page = buffer.page;
     map.width = buffer.width;
@@ -137,11 +226,14 @@ Lightmap finish_page(const TexelBuffer& buffer, RadianceSums sums, TexelSurface 
     map.texel_at = buffer.texel_at;
     map.texels = std::move(sums);
     map.surface = std::move(surface);
+    map.chart = buffer.chart;
     map.coverage.assign(buffer.size(), Coverage::none);
     for (std::size_t i = 0; i < buffer.size(); ++i)
         if (map.texels.valid(i)) map.coverage[i] = Coverage::baked;
-    fill_invalid(map, buffer);
-    for (std::uint32_t ring = 0; ring < rings; ++ring) dilate_once(map);
+    LUMEL_TRY_STATUS(Filler(map, buffer).run(context));
+    reserve(map, texels_with_rings(buffer, rings));
+    for (std::uint32_t ring = 0; ring < rings; ++ring)
+        if (!dilate_once(map, readers, context)) return cancelled_error();
     return map;
 }
 

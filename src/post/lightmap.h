@@ -2,8 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "lumel/context.h"
+#include "lumel/result.h"
 #include "path/radiance_sums.h"
 #include "texel/texel_buffer.h"
 #include "texel/texel_surface.h"
@@ -19,10 +22,18 @@ struct Lightmap {
     RadianceSums texels;                  // baked texels first (in TexelBuffer order), then dilated ones
     TexelSurface surface;                 // per texel
     std::vector<Coverage> coverage;       // per texel
+    std::vector<std::uint32_t> chart;     // per texel: whose light it is, as in TexelBuffer
 };
 
-// Fills invalid texels from their valid 3x3 neighbours (repeated until nothing changes), then dilates `rings` rings
-// around the charts. Both by coverage.
-Lightmap finish_page(const TexelBuffer& buffer, RadianceSums sums, TexelSurface surface, std::uint32_t rings);
+// At most how many texels the page has once `rings` rings surround its charts: for reserving before they are traced.
+std::size_t texels_with_rings(const TexelBuffer& buffer, std::uint32_t rings);
+
+// Fills invalid texels from the 3x3 neighbours of their own chart that have a value (repeated until nothing changes),
+// then dilates `rings` rings around the charts. Both by coverage. A dilated texel takes the light of one chart alone:
+// of the one whose bilinear lookups read it (`readers`: that chart per pixel, or kNone; empty where none is known),
+// else, or where that one has no value beside it, of the one with most neighbours, the lowest id of equals. Later rings
+// go on with it. Error: cancelled.
+Result<Lightmap> finish_page(const TexelBuffer& buffer, RadianceSums sums, TexelSurface surface,
+                             std::span<const std::uint32_t> readers, std::uint32_t rings, Context& context);
 
 }  // namespace lumel
