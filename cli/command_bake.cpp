@@ -11,6 +11,7 @@
 #include "io/baked.h"
 #include "io/image_io.h"
 #include "load.h"
+#include "path/path_integrator.h"
 #include "render/picture.h"
 
 namespace lumel::cli {
@@ -87,7 +88,7 @@ Status write_views(const BakeWriter& writer, const Scene& scene, const BakeOptio
     const BakedIrradiance lookup = [&](std::uint32_t triangle, float b1, float b2) {
         return baked.irradiance(triangle, b1, b2);
     };
-    const PathOptions path = picture_path(options);
+    const PathOptions path = transport_options(options);
     LUMEL_TRY(const std::vector<Camera> views, choose_views(transport, count, context));
     for (std::size_t k = 0; k < views.size(); ++k) {
         LUMEL_TRY(const Image truth, render_picture(transport, path, views[k], picture, nullptr, context));

@@ -13,6 +13,7 @@
 #include "io/baked.h"
 #include "io/image_io.h"
 #include "load.h"
+#include "path/path_integrator.h"
 #include "render/picture.h"
 
 namespace lumel::cli {
@@ -107,7 +108,7 @@ Status run(const Options& options) {
     const Transport transport{scene, geometry, surfaces, lights, *tracer};
     LUMEL_TRY(const Camera camera, find_camera(options.camera, transport, context));
 
-    const PathOptions path = picture_path(light);
+    const PathOptions path = transport_options(light);
     PictureOptions picture;
     picture.width = size.width;
     picture.height = size.height;

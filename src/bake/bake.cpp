@@ -84,17 +84,12 @@ ChartOptions chart_options(const BakeOptions& options) {
 }
 
 PathOptions path_options(const BakeOptions& options, const WorldGeometry& geometry) {
-    PathOptions out;
+    PathOptions out = transport_options(options);
     out.samples = options.samples ? options.samples : preset_values(options.preset).samples;
-    out.bounces = options.bounces;
-    out.seed = options.seed;
     const float diagonal = length(geometry.bounds_max - geometry.bounds_min);
     out.ao_distance = options.ao_distance > 0.0 ? static_cast<float>(options.ao_distance) : 0.1f * diagonal;
     out.two_sided = options.two_sided;
     out.stop = options.stop;
-    const auto direct = static_cast<float>(options.direct_scale), indirect = static_cast<float>(options.indirect_scale);
-    out.layer_scale = {direct, direct, indirect};
-    out.included = {options.include.direct, options.include.sky, options.include.indirect};
     out.relative_error_of_mean = options.error / normal_quantile(0.5 + 0.5 * options.confidence);
     return out;
 }

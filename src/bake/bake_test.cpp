@@ -61,6 +61,7 @@ void hash_sums(Hasher& hasher, const RadianceSums& sums) {
     hasher.array(std::span(std::as_const(sums.sky_visibility)));
     hasher.array(std::span(std::as_const(sums.ambient_occlusion)));
     hasher.array(std::span(std::as_const(sums.count)));
+    hasher.array(std::span(std::as_const(sums.traced)));
 }
 
 std::string bake_hash(unsigned threads, const BakeOptions& options, BakeReport* report = nullptr) {
@@ -103,14 +104,25 @@ TEST(Bake, TheSameBitsForTheSeedsStopRule) {
     EXPECT_GE(report.samples, report.texels * 64) << "the rule is looked at no sooner than at 10 %";
 }
 
+// The room and what its paths are traced through.
+struct TracedRoom {
+    Scene scene = room();
+    WorldGeometry geometry;
+    SurfaceReader surfaces{scene, geometry};
+    LightSet lights{scene, geometry, surfaces};
+    std::unique_ptr<Tracer> tracer;
+    Transport transport{scene, geometry, surfaces, lights, *tracer};
+
+    explicit TracedRoom(Context& context)
+        : geometry(flatten(scene, context).value()), tracer(make_embree_tracer(geometry, surfaces, context).value()) {}
+};
+
 TEST(Bake, AnySplitOfTheTexelsGivesTheSameBits) {
     Context context(2);
-    const Scene scene = room();
-    const WorldGeometry geometry = flatten(scene, context).value();
-    const SurfaceReader surfaces(scene, geometry);
-    const LightSet lights(scene, geometry, surfaces);
-    const auto tracer = make_embree_tracer(geometry, surfaces, context).value();
-    const Transport transport{scene, geometry, surfaces, lights, *tracer};
+    const TracedRoom traced(context);
+    const Scene& scene = traced.scene;
+    const WorldGeometry& geometry = traced.geometry;
+    const Transport& transport = traced.transport;
     ChartOptions chart_options;
     chart_options.texels_per_metre = 8;
     const ChartSet charts = make_charts(scene, geometry, chart_options, context).value();
@@ -141,6 +153,7 @@ TEST(Bake, AnySplitOfTheTexelsGivesTheSameBits) {
                 merged.sky_visibility[i] = part.sky_visibility[i];
                 merged.ambient_occlusion[i] = part.ambient_occlusion[i];
                 merged.count[i] = part.count[i];
+                merged.traced[i] = part.traced[i];
             }
         }
         EXPECT_EQ(hash_of(whole), hash_of(merged)) << shards << " shards";
@@ -150,12 +163,8 @@ TEST(Bake, AnySplitOfTheTexelsGivesTheSameBits) {
 // A picture shows the layers that the bake's files sum, scaled alike.
 TEST(Bake, IrradianceOfPicturesIsTheScaledSumOfLayers) {
     Context context(1);
-    const Scene scene = room();
-    const WorldGeometry geometry = flatten(scene, context).value();
-    const SurfaceReader surfaces(scene, geometry);
-    const LightSet lights(scene, geometry, surfaces);
-    const auto tracer = make_embree_tracer(geometry, surfaces, context).value();
-    const Transport transport{scene, geometry, surfaces, lights, *tracer};
+    const TracedRoom traced(context);
+    const Transport& transport = traced.transport;
     std::array<PathStart, kWavefrontLanes> starts;
     for (std::uint32_t i = 0; i < kWavefrontLanes; ++i) starts[i] = {{1.5f, 1e-3f, 1.5f}, {0, 1, 0}, 1, i};
     const auto sum_of = [&](std::array<float, kLayerCount> layer_scale) {

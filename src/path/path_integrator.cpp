@@ -16,7 +16,7 @@
 #include "math/frame.h"
 #include "math/sampler.h"
 #include "math/warp.h"
-#include "sh/basis.h"
+#include "path/texel_sink.h"
 #include "texel/ray_offset.h"
 
 namespace lumel {
@@ -86,6 +86,16 @@ public:
     std::array<SurfaceStart, kSamplesPerTexel> back_surfaces;
     std::array<std::uint8_t, kSamplesPerTexel> sides;
 };
+
+PathOptions transport_options(const BakeOptions& options) {
+    PathOptions out;
+    out.bounces = options.bounces;
+    out.seed = options.seed;
+    const auto direct = static_cast<float>(options.direct_scale), indirect = static_cast<float>(options.indirect_scale);
+    out.layer_scale = {direct, direct, indirect};
+    out.included = {options.include.direct, options.include.sky, options.include.indirect};
+    return out;
+}
 
 PathIntegrator::PathIntegrator(const Transport& transport, const PathOptions& options)
     : transport_(transport),
@@ -385,132 +395,6 @@ void PathIntegrator::surface_starts(std::span<const SamplePoint> points, std::sp
 }
 
 namespace {
-
-// Sums of one texel: in single precision over one wavefront, and those in double, for millions of samples must add up.
-class TexelSink {
-public:
-    explicit TexelSink(const PathOptions& options)
-        : ao_distance_(options.ao_distance), scale_(options.layer_scale), included_(options.included) {}
-
-    void begin(std::span<const PathStart> starts, float sh_scale) {
-        starts_ = starts;
-        sh_scale_ = sh_scale;
-        wavefront_ = {};
-        for (std::size_t lane = 0; lane < starts.size(); ++lane) {
-            sample_[lane] = {};
-            void_[lane] = false;
-        }
-    }
-
-    void void_path(std::uint32_t lane) { void_[lane] = true; }
-
-    void light(std::uint32_t lane, Layer of, Vec3 direction, Vec3 value) {
-        const auto layer = static_cast<std::size_t>(of);
-        LayerSums<float>& sums = wavefront_[layer];
-        value *= scale_[layer];
-        const ShBasis basis = sh_basis(direction);
-        for (std::size_t c = 0; c < 3; ++c)
-            for (std::size_t i = 0; i < kShCoefficients; ++i) sums.sh[c][i] += basis[i] * value[c];
-        const float cosine = std::max(0.0f, dot(direction, starts_[lane].normal));
-        const Vec3 irradiance = value * (cosine * kInvPi);
-        for (std::size_t c = 0; c < 3; ++c) sums.irradiance[c] += irradiance[c];
-        if (included_[layer]) sample_[lane] += irradiance;
-    }
-
-    void free_path(std::uint32_t lane, Vec3 direction, float pdf, float distance, bool sky) {
-        const float cosine = std::max(0.0f, dot(direction, starts_[lane].normal));
-        const double weight = static_cast<double>(cosine * kInvPi / pdf);
-        if (sky) sky_visibility_ += weight;
-        if (distance <= ao_distance_) return;
-        open_ += weight;
-        for (std::size_t c = 0; c < 3; ++c) bent_[c] += weight * static_cast<double>(direction[c]);
-    }
-
-    void end() {
-        for (std::size_t layer = 0; layer < kLayerCount; ++layer)
-            for (std::size_t c = 0; c < 3; ++c) {
-                for (std::size_t i = 0; i < kShCoefficients; ++i)
-                    layers_[layer].sh[c][i] += static_cast<double>(wavefront_[layer].sh[c][i] * sh_scale_);
-                layers_[layer].irradiance[c] += static_cast<double>(wavefront_[layer].irradiance[c]);
-            }
-        for (std::size_t lane = 0; lane < starts_.size(); ++lane) {
-            ++traced_;
-            if (!void_[lane]) ++count_;
-            for (std::size_t c = 0; c < 3; ++c) channels_[c].add(static_cast<double>(sample_[lane][c]), !void_[lane]);
-            luminance_.add(static_cast<double>(luminance(sample_[lane])), !void_[lane]);
-        }
-    }
-
-    // Frostbite's rule on the texel's own luminance.
-    [[nodiscard]] bool converged(double relative_error) const {
-        if (count_ < 2) return false;
-        return std::sqrt(luminance_.variance(count_, traced_)) <= relative_error * luminance_.mean(count_);
-    }
-
-    void store(RadianceSums& out, std::size_t index) const {
-        out.traced[index] = traced_;
-        out.count[index] = count_;
-        if (count_ == 0) return;
-        const double inverse = 1.0 / static_cast<double>(count_);
-        for (std::size_t layer = 0; layer < kLayerCount; ++layer) {
-            LayerMoments& moments = out.layers[index][layer];
-            for (std::size_t c = 0; c < 3; ++c) {
-                for (std::size_t i = 0; i < kShCoefficients; ++i)
-                    moments.sh[i][c] = static_cast<float>(layers_[layer].sh[c][i] * inverse);
-                moments.irradiance[c] = static_cast<float>(layers_[layer].irradiance[c] * inverse);
-            }
-        }
-        for (std::size_t c = 0; c < 3; ++c) {
-            out.variance[index][c] = static_cast<float>(channels_[c].variance(count_, traced_));
-            out.bent_normal[index][c] = static_cast<float>(bent_[c] * inverse);
-        }
-        out.sky_visibility[index] = static_cast<float>(std::min(1.0, sky_visibility_ * inverse));
-        out.ambient_occlusion[index] = static_cast<float>(std::min(1.0, open_ * inverse));
-    }
-
-private:
-    template <class Number>
-    struct LayerSums {
-        std::array<std::array<Number, kShCoefficients>, 3> sh{};  // by channel: the nine add up as vectors
-        std::array<Number, 3> irradiance{};
-    };
-
-    // Moments of samples x_i over all paths, of which those with v_i = 1 count: the mean is sum x / sum v.
-    class Moments {
-    public:
-        void add(double x, bool counts) {
-            sum_ += x;
-            squares_ += x * x;
-            if (counts) counted_ += x;
-        }
-        [[nodiscard]] double mean(std::uint32_t count) const { return sum_ / static_cast<double>(count); }
-        // Of that mean, by the residuals x - mean v (Cochran 1977, ch. 6); without void paths the familiar one.
-        [[nodiscard]] double variance(std::uint32_t count, std::uint32_t traced) const {
-            if (count < 2) return 0.0;
-            const double n = static_cast<double>(count), m = mean(count);
-            const double residuals = std::max(0.0, squares_ - 2.0 * m * counted_ + m * m * n);
-            return residuals / (n * n) * (static_cast<double>(traced) / static_cast<double>(traced - 1));
-        }
-
-    private:
-        double sum_ = 0.0, squares_ = 0.0, counted_ = 0.0;
-    };
-
-    float ao_distance_;
-    std::array<float, kLayerCount> scale_;
-    std::array<bool, kLayerCount> included_;
-    float sh_scale_ = 1.0f;
-    std::span<const PathStart> starts_;
-    std::array<Vec3, kWavefrontLanes> sample_{};
-    std::array<bool, kWavefrontLanes> void_{};
-    std::array<LayerSums<float>, kLayerCount> wavefront_{};
-    std::array<LayerSums<double>, kLayerCount> layers_{};
-    std::array<Moments, 3> channels_{};
-    Moments luminance_;
-    std::array<double, 3> bent_{};
-    double sky_visibility_ = 0.0, open_ = 0.0;
-    std::uint32_t count_ = 0, traced_ = 0;
-};
 
 // Only the irradiance of each path, for pictures.
 class IrradianceSink {

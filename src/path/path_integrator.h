@@ -38,6 +38,9 @@ struct PathOptions {
     std::array<bool, kLayerCount> included{true, true, true};
 };
 
+// What texels and pictures of a bake have in common: length and seed of the paths, the layers and their scales.
+PathOptions transport_options(const BakeOptions& options);
+
 // What a path is traced through. Borrowed; all of it is const while paths run.
 struct Transport {
     const Scene& scene;
