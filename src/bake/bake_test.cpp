@@ -1,51 +1,17 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <memory>
 
 #include "base/hash.h"
 #include "chart/chart_set.h"
-#include "light/light_set.h"
 #include "lumel/bake.h"
 #include "path/path_integrator.h"
 #include "post/lightmap.h"
-#include "support/scene_builder.h"
+#include "support/traced_scene.h"
 #include "texel/texel_buffer.h"
-#include "trace/tracer.h"
 
 namespace lumel {
 namespace {
-
-// A room with one side open to the sky, a box and a ball of few facets in it, a lamp, a sun and a point light: every
-// kind of path.
-Scene room() {
-    test::SceneBuilder b;
-    const auto white = b.material({0.8f, 0.8f, 0.7f});
-    const auto red = b.material({0.7f, 0.1f, 0.1f}, {}, true);
-    const auto lamp = b.material({0.1f, 0.1f, 0.1f}, {20, 15, 10});
-    b.object("room", white, [](Mesh& m) {
-        test::add_quad(m, {0, 0, 2}, {3, 0, 0}, {0, 0, -2});
-        test::add_quad(m, {0, 0, 0}, {3, 0, 0}, {0, 2, 0});
-        test::add_quad(m, {0, 0, 2}, {0, 0, -2}, {0, 2, 0});
-    });
-    const auto box = b.object(
-        "box", red,
-        [](Mesh& m) {
-            test::add_box(m, {-0.3f, 0, -0.3f}, {0.3f, 0.6f, 0.3f}, false);
-        },
-        Affine{{Vec3{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {1, 0, 1}});
-    b.instance("box 2", b.scene().instances[box].mesh, Affine{{Vec3{-1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {2.2f, 0, 0.8f}});
-    b.object("lamp", lamp, [](Mesh& m) { test::add_quad(m, {1, 1.9f, 1}, {0.4f, 0, 0}, {0, 0, 0.4f}); });
-    Light& sun = b.light(LightShape::sun);
-    sun.direction = normalize(Vec3{-0.5f, -1.0f, -0.4f});
-    sun.intensity = {5, 4, 3};
-    sun.angular_diameter = 0.1f;
-    Light& point = b.light(LightShape::point);
-    point.position = {2.5f, 1.5f, 1.5f};
-    point.intensity = {1, 2, 3};
-    b.scene().sky.color = {0.4f, 0.6f, 1.0f};
-    return b.build();
-}
 
 BakeOptions small_options() {
     BakeOptions options;
@@ -77,7 +43,7 @@ std::string bake_hash(unsigned threads, const BakeOptions& options, BakeReport* 
         hash_sums(hasher, map.texels);
         return success();
     };
-    const Result<BakeReport> result = bake(room(), options, sink, context);
+    const Result<BakeReport> result = bake(test::room(), options, sink, context);
     EXPECT_TRUE(result.ok()) << (result.ok() ? "" : result.error().text());
     if (report && result.ok()) *report = *result;
     return hasher.finish().hex();
@@ -105,22 +71,9 @@ TEST(Bake, TheSameBitsForTheSeedsStopRule) {
     EXPECT_GE(report.samples, report.texels * 64) << "the rule is looked at no sooner than at 10 %";
 }
 
-// The room and what its paths are traced through.
-struct TracedRoom {
-    Scene scene = room();
-    WorldGeometry geometry;
-    SurfaceReader surfaces{scene, geometry};
-    LightSet lights{scene, geometry, surfaces};
-    std::unique_ptr<Tracer> tracer;
-    Transport transport{scene, geometry, surfaces, lights, *tracer};
-
-    explicit TracedRoom(Context& context)
-        : geometry(flatten(scene, context).value()), tracer(make_embree_tracer(geometry, surfaces, context).value()) {}
-};
-
 TEST(Bake, AnySplitOfTheTexelsGivesTheSameBits) {
     Context context(2);
-    const TracedRoom traced(context);
+    const test::TracedScene traced(test::room(), context);
     const Scene& scene = traced.scene;
     const WorldGeometry& geometry = traced.geometry;
     const Transport& transport = traced.transport;
@@ -161,39 +114,8 @@ TEST(Bake, AnySplitOfTheTexelsGivesTheSameBits) {
     }
 }
 
-// A picture shows the layers that the bake's files sum, scaled alike.
-TEST(Bake, IrradianceOfPicturesIsTheScaledSumOfLayers) {
-    Context context(1);
-    const TracedRoom traced(context);
-    const Transport& transport = traced.transport;
-    std::array<PathStart, kWavefrontLanes> starts;
-    for (std::uint32_t i = 0; i < kWavefrontLanes; ++i) starts[i] = {{1.5f, 1e-3f, 1.5f}, {0, 1, 0}, 1, i};
-    const auto sum_of = [&](std::array<float, kLayerCount> layer_scale) {
-        PathOptions path;
-        path.bounces = 4;
-        path.layer_scale = layer_scale;
-        const PathIntegrator integrator(transport, path);
-        const auto workspace = integrator.make_workspace();
-        std::array<Vec3, kWavefrontLanes> irradiance;
-        std::array<std::uint8_t, kWavefrontLanes> valid;
-        integrator.gather_irradiance(starts, *workspace, irradiance, valid);
-        Vec3 sum{};
-        for (const Vec3 i : irradiance) sum += i;
-        return sum;
-    };
-    const Vec3 direct = sum_of({1, 0, 0}), sky = sum_of({0, 1, 0}), indirect = sum_of({0, 0, 1});
-    for (const Vec3 layer : {direct, sky, indirect}) EXPECT_GT(layer.x, 0.0f);
-    const Vec3 all = sum_of({1, 1, 1}), scaled = sum_of({2, 0.5f, 3});
-    const Vec3 expected_all = direct + sky + indirect, expected_scaled = direct * 2.0f + sky * 0.5f + indirect * 3.0f;
-    // The same few hundred numbers summed in another order: rounding stays below 1e-5.
-    for (std::size_t c = 0; c < 3; ++c) {
-        EXPECT_NEAR(all[c], expected_all[c], 1e-5f * expected_all[c]);
-        EXPECT_NEAR(scaled[c], expected_scaled[c], 1e-5f * expected_scaled[c]);
-    }
-}
-
 TEST(Lighting, SkyIntensityAndRotationActOnTheScenesOwnSky) {
-    Scene scene = room();
+    Scene scene = test::room();
     scene.sky.rotation = 0.25f;
     BakeOptions options;
     options.sky.intensity = 2;
@@ -204,7 +126,7 @@ TEST(Lighting, SkyIntensityAndRotationActOnTheScenesOwnSky) {
 }
 
 TEST(Lighting, TheOptionsSkyReplacesTheScenes) {
-    Scene scene = room();
+    Scene scene = test::room();
     scene.sky.rotation = 0.25f;
     BakeOptions options;
     options.sky.color = Vec3{1, 2, 3};
@@ -216,7 +138,7 @@ TEST(Lighting, TheOptionsSkyReplacesTheScenes) {
 
 TEST(Lighting, TooBrightIsAnErrorThatNamesTheRemedy) {
     for (const double intensity : {2e12, 3e38, 1e300}) {
-        Scene scene = room();
+        Scene scene = test::room();
         scene.sky.map = SkyMap{2, 1, {Vec3{1, 1, 1}, Vec3{1, 10, 1}}};
         BakeOptions options;
         options.sky.intensity = intensity;
@@ -226,7 +148,7 @@ TEST(Lighting, TooBrightIsAnErrorThatNamesTheRemedy) {
         EXPECT_EQ(status.error().code, ErrorCode::invalid_input);
         EXPECT_NE(status.error().text().find("--sky-intensity"), std::string::npos) << status.error().text();
 
-        scene = room();
+        scene = test::room();
         BakeOptions sun;
         sun.sun.direction = Vec3{0, -1, 0};
         sun.sun.illuminance = intensity;
@@ -238,7 +160,7 @@ TEST(Lighting, TooBrightIsAnErrorThatNamesTheRemedy) {
 
 TEST(Lighting, TheSunsDirectionMayHaveAnyLength) {
     for (const float length : {1e-30f, 1.0f, 1e30f}) {
-        Scene scene = room();
+        Scene scene = test::room();
         BakeOptions options;
         options.sun.direction = Vec3{0, -3, 4} * length;
         ASSERT_TRUE(apply_lighting(scene, options).ok()) << length;
@@ -265,7 +187,7 @@ TEST(Bake, TooLittleMemoryIsAnErrorThatSaysHowMuchIsNeeded) {
     Context context(1);
     BakeSink sink{[](const auto&, const auto&, const auto&) { return success(); },
                   [](const auto&) { return success(); }};
-    const auto result = bake(room(), options, sink, context);
+    const auto result = bake(test::room(), options, sink, context);
     ASSERT_FALSE(result.ok());
     EXPECT_EQ(result.error().code, ErrorCode::out_of_memory);
     EXPECT_NE(result.error().message.find("needs about"), std::string::npos);
@@ -278,7 +200,7 @@ TEST(Bake, CancelledBakesStopAndSaySo) {
                       return success();
                   },
                   [](const auto&) { return success(); }};
-    const auto result = bake(room(), small_options(), sink, context);
+    const auto result = bake(test::room(), small_options(), sink, context);
     ASSERT_FALSE(result.ok());
     EXPECT_EQ(result.error().code, ErrorCode::cancelled);
 }

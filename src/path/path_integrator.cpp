@@ -448,15 +448,16 @@ void PathIntegrator::gather_texel(std::span<const SamplePoint> points, std::uint
     // the order's even spread.
     const bool all_points = n == kSamplesPerTexel;
     TexelSink sink(options_);
-    const std::uint32_t tenth = (options_.samples + 9) / 10;
-    std::uint32_t next_check = tenth;
-    for (std::uint32_t base = 0; base < options_.samples; base += kWavefrontLanes) {
+    const bool may_stop = options_.stop == StopRule::flux;
+    const std::uint32_t step = may_stop ? (options_.samples + 9) / 10 : options_.samples;
+    std::uint32_t next_check = step;
+    for (std::uint32_t base = 0, lanes = 0; base < options_.samples; base += lanes) {
         if (context.cancelled()) return;
-        const std::uint32_t lanes = std::min<std::uint32_t>(kWavefrontLanes, options_.samples - base);
+        lanes = std::min({static_cast<std::uint32_t>(kWavefrontLanes), next_check - base, options_.samples - base});
         for (std::uint32_t lane = 0; lane < lanes; ++lane) {
             const std::uint32_t sample = base + lane;
             // Both sides take turns in pairs, so that each side meets every sample point.
-            const bool back = both_sides && ((sample ^ (sample / kWavefrontLanes)) & 1u) != 0;
+            const bool back = both_sides && ((sample ^ (sample / kSamplesPerTexel)) & 1u) != 0;
             const std::size_t point = (all_points ? sample ^ key : sample + key) % n;
             const SurfaceStart& start = (back ? w.back_surfaces : w.surfaces)[point];
             w.starts[lane] = {start.origin, start.normal, key, sample, start.skip};
@@ -465,9 +466,9 @@ void PathIntegrator::gather_texel(std::span<const SamplePoint> points, std::uint
         sink.begin(starts, both_sides ? 2.0f : 1.0f);
         trace_paths(starts, w, sink);
         sink.end();
-        if (options_.stop == StopRule::flux && base + lanes >= next_check) {
-            if (sink.converged(options_.relative_error_of_mean)) break;
-            next_check += tenth;
+        if (base + lanes == next_check) {
+            if (may_stop && sink.converged(options_.relative_error_of_mean)) break;
+            next_check += step;
         }
     }
     sink.store(out, index);

@@ -23,7 +23,7 @@
 
 namespace lumel {
 
-inline constexpr std::size_t kWavefrontLanes = 64;
+inline constexpr std::size_t kWavefrontLanes = 256;
 
 struct PathOptions {
     std::uint32_t samples = 512;

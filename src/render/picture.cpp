@@ -37,7 +37,7 @@ private:
     float tan_y_, tan_x_, inverse_width_, inverse_height_;
 };
 
-// The picture of one worker: up to 64 camera rays of one pixel at a time.
+// The picture of one worker: up to kWavefrontLanes camera rays of one pixel at a time.
 class PixelTracer {
 public:
     PixelTracer(const Transport& transport, const PathIntegrator& integrator, const PathOptions& path, const Lens& lens,
