@@ -111,7 +111,8 @@ void run_replay(const Options& options) {
             const std::size_t texel = first + i;
             const std::uint32_t n = sample_points(texels, texel, scene, geometry, charts, atlas, points);
             const std::uint64_t id = std::uint64_t{texels.y[texel]} << 16 | texels.x[texel];
-            integrator.gather_texel(std::span(points).first(n), id, *workspace, sums, i, context);
+            integrator.gather_texel({std::span(points).first(n), id, texels.world_size[texel]}, *workspace, sums, i,
+                                    context);
         }
     };
     const RecordingTracer recorder(*tracer);

@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <tuple>
 
 #include "base/check.h"
 #include "base/parallel.h"
@@ -16,6 +18,7 @@
 #include "math/frame.h"
 #include "math/sampler.h"
 #include "math/warp.h"
+#include "path/enclosed_points.h"
 #include "path/texel_sink.h"
 #include "texel/ray_offset.h"
 
@@ -28,6 +31,9 @@ enum Pair : std::uint32_t { kDirectionPair, kSkyPair, kLocalPair, kChoicePair, k
 
 constexpr std::uint32_t kRouletteFrom = 3;             // the first vertex after which a path may be ended by chance
 constexpr std::uint32_t kDirectionSalt = 0x51ed270bu;  // of the alpha keys of sampled directions
+// In texels. Cavities under what stands on a texel are not much wider than what hides them; rooms whose walls face
+// outwards are, and the things in such rooms are not enclosed.
+constexpr float kEnclosureReach = 8.0f;
 constexpr float kShadowShortening = 1.0f - 1e-4f;  // of shadow rays to finite lights, against hitting the light itself
 
 float power_heuristic(float pdf, float other_pdf) {
@@ -100,7 +106,10 @@ PathOptions transport_options(const BakeOptions& options) {
 PathIntegrator::PathIntegrator(const Transport& transport, const PathOptions& options)
     : transport_(transport),
       options_(options),
-      pairs_per_vertex_(kFirstSunPair + static_cast<std::uint32_t>(transport.lights.sun_count())) {}
+      pairs_per_vertex_(kFirstSunPair + static_cast<std::uint32_t>(transport.lights.sun_count())),
+      any_double_sided_(std::ranges::any_of(transport.geometry.triangles, [](const WorldTriangle& triangle) {
+          return (triangle.flags & kDoubleSided) != 0;
+      })) {}
 
 PathIntegrator::~PathIntegrator() = default;
 
@@ -429,19 +438,36 @@ void PathIntegrator::gather_irradiance(std::span<const PathStart> starts, Worksp
     trace_paths(starts, workspace, sink);
 }
 
-void PathIntegrator::gather_texel(std::span<const SamplePoint> points, std::uint64_t id, Workspace& w,
-                                  RadianceSums& out, std::size_t index, const Context& context) const {
+// Leaves out the enclosed points, unless all are; returns how many remain and whether they are enclosed.
+std::pair<std::size_t, bool> PathIntegrator::open_points(std::size_t n, float reach, std::uint32_t key,
+                                                         Workspace& w) const {
+    const std::uint64_t enclosed =
+        enclosed_points(std::span(w.surfaces).first(n), reach, mix32(key), transport_.tracer, w.rays, w.hits);
+    const auto shut = static_cast<std::size_t>(std::popcount(enclosed));
+    if (shut == 0 || shut == n) return {n, shut == n};
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < n; ++i)
+        if ((enclosed >> i & 1u) == 0) w.surfaces[kept++] = w.surfaces[i];
+    return {kept, false};
+}
+
+void PathIntegrator::gather_texel(const GatherSite& site, Workspace& w, RadianceSums& out, std::size_t index,
+                                  const Context& context) const {
+    const std::span<const SamplePoint> points = site.points;
     LUMEL_CHECK(!points.empty() && points.size() <= kSamplesPerTexel, points.size());
-    const std::uint32_t key = sampler_key(options_.seed, id);
+    const std::uint32_t key = sampler_key(options_.seed, site.id);
     const bool both_sides =
         options_.two_sided && (transport_.geometry.triangles[points[0].triangle].flags & kDoubleSided) != 0;
 
-    const std::size_t n = points.size();
+    std::size_t n = points.size();
+    bool enclosed = false;
     std::fill(w.sides.begin(), w.sides.end(), std::uint8_t{0});
     surface_starts(points, std::span(w.sides).first(n), w, w.surfaces);
     if (both_sides) {
         std::fill(w.sides.begin(), w.sides.end(), std::uint8_t{1});
         surface_starts(points, std::span(w.sides).first(n), w, w.back_surfaces);
+    } else if (any_double_sided_) {
+        std::tie(n, enclosed) = open_points(n, kEnclosureReach * site.texel_size, key, w);
     }
 
     // Counts that do not fill a whole round of the points leave out others in each texel; blocks of a power of two keep
@@ -472,6 +498,8 @@ void PathIntegrator::gather_texel(std::span<const SamplePoint> points, std::uint
         }
     }
     sink.store(out, index);
+    // Nobody sees a texel that is shut in and dark, but its neighbours are blended with it: it takes their light.
+    if (enclosed && sink.is_dark()) out.count[index] = 0;
 }
 
 void RadianceSums::reserve(std::size_t texels) {
@@ -517,7 +545,8 @@ Result<RadianceSums> gather_page(const TexelBuffer& texels, const ChartSet& char
                     sample_points(texels, i, transport.scene, transport.geometry, charts, atlas, points);
                 const std::uint64_t id =
                     (std::uint64_t{texels.page} << 32) | (std::uint64_t{texels.y[i]} << 16) | texels.x[i];
-                integrator.gather_texel(std::span(points).first(n), id, *workspaces[range.worker], sums, i, context);
+                integrator.gather_texel({std::span(points).first(n), id, texels.world_size[i]},
+                                        *workspaces[range.worker], sums, i, context);
             }
         },
         "trace", [&] { return transport.tracer.statistics().rays - rays_before; });

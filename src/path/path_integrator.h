@@ -1,5 +1,5 @@
 // The brute-force integrator: unidirectional path tracing with next-event estimation and multiple importance sampling,
-// in wavefronts of up to 64 paths. It is the truth that faster integrators are measured against.
+// in wavefronts of paths. It is the truth that faster integrators are measured against.
 //
 // Which rays a texel sends (docs/conventions.md, "The hemisphere of a texel"): the upper hemisphere of the vertex
 // normal, with density (1/2 + cos)/(2 pi), from sample points spread over the texel. A path whose first ray meets the
@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "light/light_set.h"
@@ -65,6 +66,13 @@ struct SurfaceStart {
     std::uint32_t skip = kNone;  // PathStart::skip
 };
 
+// Where a texel gathers.
+struct GatherSite {
+    std::span<const SamplePoint> points;
+    std::uint64_t id;  // names the texel for good (page and position), whatever range, thread or shard it is baked in
+    float texel_size;  // metres
+};
+
 class PathIntegrator {
 public:
     PathIntegrator(const Transport& transport, const PathOptions& options);
@@ -78,10 +86,10 @@ public:
     using WorkspacePtr = std::unique_ptr<Workspace, WorkspaceDeleter>;
     [[nodiscard]] WorkspacePtr make_workspace() const;
 
-    // Gathers all samples of one texel into out[index]. `id` names the texel for good (page and position), whatever
-    // range, thread or shard it is baked in. Stops early, leaving the texel untouched, if `cancelled` turns true.
-    void gather_texel(std::span<const SamplePoint> points, std::uint64_t id, Workspace& workspace, RadianceSums& out,
-                      std::size_t index, const Context& context) const;
+    // Gathers all samples of one texel into out[index]. Stops early, leaving the texel untouched, if `context` is
+    // cancelled.
+    void gather_texel(const GatherSite& site, Workspace& workspace, RadianceSums& out, std::size_t index,
+                      const Context& context) const;
 
     // Irradiance I about the start's normal of each path (at most kWavefrontLanes), all included layers; void paths
     // give valid = 0: divide the sum over all paths by the number of valid ones. For pictures: `lumel render`.
@@ -96,9 +104,12 @@ private:
     template <class Sink>
     void trace_paths(std::span<const PathStart> starts, Workspace& workspace, Sink& sink) const;
 
+    std::pair<std::size_t, bool> open_points(std::size_t n, float reach, std::uint32_t key, Workspace& workspace) const;
+
     Transport transport_;
     PathOptions options_;
     std::uint32_t pairs_per_vertex_;
+    bool any_double_sided_;
 };
 
 // Stage: all texels of a page. `first`, `count`: the range of texels to do (the rest of the sums stay zero); any split
