@@ -10,7 +10,7 @@
 
 namespace lumel {
 
-// Texel budget and samples where neither density nor samples are asked: preview 0.25 M texels, 128 samples;
+// Texel budget and samples where neither density nor samples are asked: preview 0.25 M texels, 256 samples;
 // medium 2 M, 512; production 8 M, 4096. Previews are denoised.
 enum class Preset : std::uint8_t { preview, medium, production };
 

@@ -66,7 +66,7 @@ Status apply_lighting(Scene& scene, const BakeOptions& options) {
 
 PresetValues preset_values(Preset preset) {
     switch (preset) {
-        case Preset::preview: return {0.25e6, 128, true};
+        case Preset::preview: return {0.25e6, 256, true};
         case Preset::medium: return {2e6, 512, false};
         case Preset::production: return {8e6, 4096, false};
     }
