@@ -12,6 +12,8 @@ DiscLight::DiscLight(const Light& light)
 
 double DiscLight::power() const { return double{kPi} * area_ * strength(radiance_); }
 
+LightBounds DiscLight::bounds() const { return patch_.bounds(power()); }
+
 LightSample DiscLight::sample(Vec3 point, Vec2 u) const {
     LightSample sample = patch_.towards(point, ConcentricDisc::sample(u), area_);
     sample.weight *= radiance_;

@@ -10,6 +10,7 @@ public:
     explicit DiscLight(const Light& light);
 
     [[nodiscard]] double power() const;
+    [[nodiscard]] LightBounds bounds() const;
     [[nodiscard]] bool can_be_hit() const { return true; }
     [[nodiscard]] LightSample sample(Vec3 point, Vec2 u) const;
     [[nodiscard]] LightHit intersect(Vec3 origin, Vec3 direction) const;

@@ -44,6 +44,22 @@ double EmissiveTriangle::power(const Scene& scene) const {
     return double{kPi} * geometry_.area(triangle_) * mean * (double_sided() ? 2.0 : 1.0);
 }
 
+LightBounds EmissiveTriangle::bounds(const Scene& scene) const {
+    LightBounds b;
+    const auto corners = geometry_.corners(triangle_);
+    b.low = b.high = corners[0];
+    for (const Vec3 corner : corners)
+        for (std::size_t c = 0; c < 3; ++c) {
+            b.low[c] = std::min(b.low[c], corner[c]);
+            b.high[c] = std::max(b.high[c], corner[c]);
+        }
+    b.axis = geometry_.geometric_normal(triangle_);
+    b.cos_facing = 1.0f;
+    b.both_sides = double_sided();
+    b.intensity = power(scene) / (double{kPi} * (double_sided() ? 2.0 : 1.0));
+    return b;
+}
+
 LightSample EmissiveTriangle::sample(Vec3 point, Vec2 u) const {
     const Vec2 b = UniformTriangle::sample(u);
     const Vec3 to_light = geometry_.position(triangle_, b.x, b.y) - point;

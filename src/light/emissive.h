@@ -2,6 +2,7 @@
 // ones.
 #pragma once
 
+#include "light/light_bounds.h"
 #include "light/light_sample.h"
 #include "scene/surface.h"
 #include "scene/world_geometry.h"
@@ -16,6 +17,7 @@ public:
 
     // Estimated from the emission texture at fixed points; never zero for a triangle with an area whose material emits.
     [[nodiscard]] double power(const Scene& scene) const;
+    [[nodiscard]] LightBounds bounds(const Scene& scene) const;
     [[nodiscard]] LightSample sample(Vec3 point, Vec2 u) const;
     // What a ray that hit the triangle meets there.
     [[nodiscard]] LightHit hit(float b1, float b2, Vec3 direction, float distance, bool back_face) const;

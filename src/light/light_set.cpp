@@ -39,12 +39,16 @@ LightSample selected(LightSample sample, float probability) {
 
 }  // namespace
 
-LightSet::LightSet(const Scene& scene, const WorldGeometry& geometry, SurfaceReader surfaces)
-    : scene_(&scene), geometry_(&geometry), surfaces_(surfaces) {
+LightSet::LightSet(const Scene& scene, const WorldGeometry& geometry, SurfaceReader surfaces, Choice choice)
+    : scene_(&scene), geometry_(&geometry), surfaces_(surfaces), choice_(choice) {
     add_sky();
     add_lights();
     add_emissive_triangles();
-    share_local_selection();
+    if (!has_local()) return;
+    if (choice_ == Choice::power)
+        share_by_power();
+    else
+        build_tree();
 }
 
 void LightSet::add_sky() {
@@ -96,21 +100,43 @@ void LightSet::add_emissive_triangles() {
         local_of_triangle_[triangles_[i]] = static_cast<std::uint32_t>(shapes_.size() + i);
 }
 
-void LightSet::share_local_selection() {
+void LightSet::share_by_power() {
     std::vector<double> powers;
     powers.reserve(shapes_.size() + triangles_.size());
     for (const Local& local : shapes_)
         powers.push_back(std::visit([](const auto& shape) { return shape.power(); }, local.shape));
     for (const std::uint32_t triangle : triangles_)
         powers.push_back(EmissiveTriangle(*geometry_, surfaces_, triangle).power(*scene_));
-    if (powers.empty()) return;
     LUMEL_CHECK(shapes_.size() < kUnits / 2, shapes_.size());
     local_ends_.resize(powers.size());
     // Lights that no ray can hit must be sampled. A triangle too dim for a share is found by the rays that hit it.
     share_units(powers, shapes_.size(), local_ends_);
 }
 
-bool LightSet::empty() const { return suns_.empty() && !has_sky_ && local_ends_.empty(); }
+void LightSet::build_tree() {
+    std::vector<LightBounds> bounds;
+    bounds.reserve(shapes_.size() + triangles_.size());
+    for (const Local& local : shapes_)
+        bounds.push_back(std::visit([](const auto& shape) { return shape.bounds(); }, local.shape));
+    for (const std::uint32_t triangle : triangles_)
+        bounds.push_back(EmissiveTriangle(*geometry_, surfaces_, triangle).bounds(*scene_));
+    tree_ = LightTree(bounds);
+}
+
+LightSet::Chosen LightSet::choose_local(const Receiver& receiver, float u) const {
+    if (choice_ == Choice::power) {
+        const lumel::Choice chosen = choose(local_ends_, u);
+        return {static_cast<std::uint32_t>(chosen.index), probability(chosen.units)};
+    }
+    const LightTree::Chosen chosen = tree_.choose(receiver, u);
+    return {chosen.light == LightTree::kNoLight ? kNone : chosen.light, probability(chosen.units)};
+}
+
+float LightSet::probability_of(const Receiver& receiver, std::uint32_t local) const {
+    return probability(choice_ == Choice::power ? units_of(local_ends_, local) : tree_.units_of(receiver, local));
+}
+
+bool LightSet::empty() const { return suns_.empty() && !has_sky_ && !has_local(); }
 
 Vec3 LightSet::artist_scale(std::uint32_t light, bool bounced) const {
     const Light& l = scene_->lights[light];
@@ -152,34 +178,36 @@ LightHit LightSet::sky(Vec3 direction) const {
     return {lookup(*scene_->sky.map, uv), sky_sampler_->pdf(uv), kInfiniteDistance};
 }
 
-LightSample LightSet::sample_local(Vec3 point, float u_select, Vec2 u, bool bounced) const {
-    if (local_ends_.empty()) return {};
-    const Choice choice = choose(local_ends_, u_select);
-    const float chance = probability(choice.units);
-    if (choice.index >= shapes_.size()) {
-        const std::uint32_t triangle = triangles_[choice.index - shapes_.size()];
+LightSample LightSet::sample_local(const Receiver& receiver, float u_select, Vec2 u, bool bounced) const {
+    if (!has_local()) return {};
+    const auto [index, chance] = choose_local(receiver, u_select);
+    if (index == kNone) return {};
+    const Vec3 point = receiver.position;
+    if (index >= shapes_.size()) {
+        const std::uint32_t triangle = triangles_[index - shapes_.size()];
         return selected(EmissiveTriangle(*geometry_, surfaces_, triangle).sample(point, u), chance);
     }
-    const Local& local = shapes_[choice.index];
+    const Local& local = shapes_[index];
     const Vec3 scale = artist_scale(local.light, bounced);
     if (scale == Vec3{}) return {};
     const LightSample sample = std::visit([&](const auto& shape) { return shape.sample(point, u); }, local.shape);
     return scaled(selected(sample, chance), scale);
 }
 
-LightHit LightSet::intersect_shape(std::uint32_t index, Vec3 origin, Vec3 direction, bool bounced) const {
+LightHit LightSet::intersect_shape(std::uint32_t index, const Receiver& receiver, Vec3 direction, bool bounced) const {
     const Local& local = shapes_[index];
-    LightHit hit = std::visit([&](const auto& shape) { return shape.intersect(origin, direction); }, local.shape);
-    hit.pdf *= probability(units_of(local_ends_, index));
+    LightHit hit =
+        std::visit([&](const auto& shape) { return shape.intersect(receiver.position, direction); }, local.shape);
+    if (hit.pdf > 0.0f) hit.pdf *= probability_of(receiver, index);
     return scaled(hit, artist_scale(local.light, bounced));
 }
 
-LightHit LightSet::emissive(std::uint32_t triangle, float b1, float b2, Vec3 direction, float distance,
-                            bool back_face) const {
+LightHit LightSet::emissive(const Receiver& receiver, std::uint32_t triangle, float b1, float b2, Vec3 direction,
+                            float distance, bool back_face) const {
     if (!is_emitter(geometry_->triangles[triangle])) return {};
     LightHit hit = EmissiveTriangle(*geometry_, surfaces_, triangle).hit(b1, b2, direction, distance, back_face);
     const std::uint32_t local = local_of_triangle_.empty() ? kNone : local_of_triangle_[triangle];
-    hit.pdf *= local == kNone ? 0.0f : probability(units_of(local_ends_, local));
+    hit.pdf *= local == kNone ? 0.0f : probability_of(receiver, local);
     return hit;
 }
 

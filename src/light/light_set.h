@@ -2,7 +2,7 @@
 // that happen to hit a light can be combined by multiple importance sampling.
 //
 // Three groups, sampled apart at every vertex of a path: suns (each of them), the sky, and one of the local lights
-// (points, spots, area lights, emissive triangles), chosen with probability proportional to its power.
+// (points, spots, area lights, emissive triangles), chosen by a tree for the receiver, or by power alone.
 #pragma once
 
 #include <array>
@@ -13,7 +13,9 @@
 #include <vector>
 
 #include "light/disc.h"
+#include "light/light_bounds.h"
 #include "light/light_sample.h"
+#include "light/light_tree.h"
 #include "light/punctual.h"
 #include "light/rectangle.h"
 #include "light/sky_map.h"
@@ -31,8 +33,14 @@ namespace lumel {
 // the artist's controls of a light (LightBake, indirect_scale, indirect_color) depend on it.
 class LightSet {
 public:
+    // How one of the local lights is chosen.
+    enum class Choice : std::uint8_t {
+        power,  // the same for every receiver: what the tree is measured against
+        tree    // by what it can bring there
+    };
+
     // Borrows geometry and surfaces. Emissive triangles of instances that take part in light transport are lights.
-    LightSet(const Scene& scene, const WorldGeometry& geometry, SurfaceReader surfaces);
+    LightSet(const Scene& scene, const WorldGeometry& geometry, SurfaceReader surfaces, Choice choice = Choice::tree);
 
     [[nodiscard]] bool empty() const;  // nothing emits: a bake would be black
     [[nodiscard]] std::size_t sun_count() const { return suns_.size(); }
@@ -40,29 +48,29 @@ public:
     // Whether sample_sky has samples (maps), and whether sample_sun reads its numbers (suns with an angular size).
     [[nodiscard]] bool samples_sky() const { return sky_sampler_.has_value(); }
     [[nodiscard]] bool samples_sun(std::size_t sun) const { return suns_[sun].shape.has_size(); }
-    [[nodiscard]] bool has_local() const { return !local_ends_.empty(); }
+    [[nodiscard]] bool has_local() const { return !shapes_.empty() || !triangles_.empty(); }
 
     [[nodiscard]] LightSample sample_sun(std::size_t sun, Vec2 u, bool bounced) const;
     [[nodiscard]] LightSample sample_sky(Vec2 u) const;
     // u_select picks the light, u the point on it.
-    [[nodiscard]] LightSample sample_local(Vec3 point, float u_select, Vec2 u, bool bounced) const;
+    [[nodiscard]] LightSample sample_local(const Receiver& receiver, float u_select, Vec2 u, bool bounced) const;
 
     // The sky in a direction. Suns are not part of it. A sky of constant colour has no samples (distance 0) and no pdf:
     // sampling the BSDF is all it needs.
     [[nodiscard]] LightHit sky(Vec3 direction) const;
     // Suns with an angular size that contain the direction: radiances add; one LightHit per sun (pdf of that sun).
     [[nodiscard]] LightHit sun(std::size_t sun, Vec3 direction, bool bounced) const;
-    // Density of sample_local for the given point of an emissive triangle; radiance included. Only the front emits,
-    // unless double-sided.
-    [[nodiscard]] LightHit emissive(std::uint32_t triangle, float b1, float b2, Vec3 direction, float distance,
-                                    bool back_face) const;
+    // What a ray of the receiver that met an emissive triangle brings, and the density of sample_local there. Only the
+    // front emits, unless double-sided.
+    [[nodiscard]] LightHit emissive(const Receiver& receiver, std::uint32_t triangle, float b1, float b2,
+                                    Vec3 direction, float distance, bool back_face) const;
     // Area lights that are not geometry (rectangle, disc, sphere, point and spot with a radius): they never block rays;
     // every one that the ray crosses before `max_distance` adds its light. Calls add(LightHit) for each.
     template <class Add>
-    void shapes_along(Vec3 origin, Vec3 direction, float max_distance, bool bounced, Add&& add) const {
+    void shapes_along(const Receiver& receiver, Vec3 direction, float max_distance, bool bounced, Add&& add) const {
         for (const std::uint32_t index : hittable_) {
-            const LightHit hit = intersect_shape(index, origin, direction, bounced);
-            if (hit.pdf > 0.0f && hit.distance < max_distance) add(hit);
+            const LightHit hit = intersect_shape(index, receiver, direction, bounced);
+            if (hit.radiance != Vec3{} && hit.distance < max_distance) add(hit);
         }
     }
     [[nodiscard]] bool has_shapes() const { return !hittable_.empty(); }
@@ -79,7 +87,14 @@ private:
         std::uint32_t light;  // into the scene's
     };
     [[nodiscard]] Vec3 artist_scale(std::uint32_t light, bool bounced) const;
-    [[nodiscard]] LightHit intersect_shape(std::uint32_t local, Vec3 origin, Vec3 direction, bool bounced) const;
+    [[nodiscard]] LightHit intersect_shape(std::uint32_t local, const Receiver& receiver, Vec3 direction,
+                                           bool bounced) const;
+    struct Chosen {
+        std::uint32_t local;  // kNone: none
+        float probability;
+    };
+    [[nodiscard]] Chosen choose_local(const Receiver& receiver, float u) const;
+    [[nodiscard]] float probability_of(const Receiver& receiver, std::uint32_t local) const;
     [[nodiscard]] Vec3 to_map(Vec3 direction) const;
     [[nodiscard]] Vec3 to_world(Vec3 direction) const;
     void add_sky();
@@ -87,17 +102,20 @@ private:
     void add_sun(std::uint32_t light);
     void add_shape(Shape shape, std::uint32_t light);
     void add_emissive_triangles();
-    void share_local_selection();
+    void share_by_power();
+    void build_tree();
 
     const Scene* scene_;
     const WorldGeometry* geometry_;
     SurfaceReader surfaces_;
     std::vector<Sun> suns_;
-    // Local lights, the choice among them by power: first `shapes_`, then `triangles_`.
+    // Local lights have one numbering: first `shapes_`, then `triangles_`.
     std::vector<Local> shapes_;
     std::vector<std::uint32_t> triangles_;
-    std::vector<std::uint32_t> local_ends_;         // math/discrete.h
-    std::vector<std::uint32_t> local_of_triangle_;  // per world triangle into local_ends_, or kNone; empty: none emits
+    Choice choice_;
+    LightTree tree_;                                // for Choice::tree
+    std::vector<std::uint32_t> local_ends_;         // for Choice::power: math/discrete.h
+    std::vector<std::uint32_t> local_of_triangle_;  // per world triangle the number, or kNone; empty: none emits
     std::vector<std::uint32_t> hittable_;           // into shapes_
     bool has_sky_ = false;
     SinCos sky_rotation_{0.0f, 1.0f};

@@ -56,7 +56,7 @@ test::Moments local_irradiance(const LightSet& lights, Vec3 point, Vec3 normal, 
     test::Moments moments;
     for (int i = 0; i < count; ++i) {
         const float u = random.unit();
-        const LightSample s = lights.sample_local(point, u, random.pair(), bounced);
+        const LightSample s = lights.sample_local({point, normal}, u, random.pair(), bounced);
         moments.add(s.distance > 0.0f ? double{s.weight.y} * std::max(0.0f, dot(s.direction, normal)) : 0.0);
     }
     return moments;
@@ -75,7 +75,7 @@ TEST(LightSet, OfADarkSceneIsEmpty) {
     EXPECT_TRUE(f.lights->empty());
     EXPECT_FALSE(f.lights->has_local());
     EXPECT_FALSE(f.lights->has_sky());
-    EXPECT_EQ(f.lights->sample_local({0, 0, 0}, 0.5f, {0.5f, 0.5f}, false).distance, 0.0f);
+    EXPECT_EQ(f.lights->sample_local({{0, 0, 0}, kUp}, 0.5f, {0.5f, 0.5f}, false).distance, 0.0f);
 }
 
 TEST(LightSet, KnowsWhatItHolds) {
@@ -137,14 +137,14 @@ TEST(LightSet, ChoosesAmongAllKindsWithoutBias) {
 // Nearest hit of a ray with the emissive quad of add_everything and all shapes along it.
 template <class Add>
 void meet_everything(const Fixture& f, Vec3 origin, Vec3 direction, Add&& add) {
-    f.lights->shapes_along(origin, direction, kInfiniteDistance, false, add);
+    f.lights->shapes_along({origin, kUp}, direction, kInfiniteDistance, false, add);
     for (std::uint32_t t = 0; t < f.world.geometry.triangle_count(); ++t) {
         const auto [a, b, c] = f.world.geometry.corners(t);
         const Vec3 e1 = b - a, e2 = c - a, p = cross(direction, e2), s = origin - a, q = cross(s, e1);
         const float det = dot(e1, p), b1 = dot(s, p) / det, b2 = dot(direction, q) / det, distance = dot(e2, q) / det;
         if (!(b1 >= 0) || !(b2 >= 0) || b1 + b2 > 1 || distance <= 0) continue;
         const bool back = dot(direction, f.world.geometry.geometric_normal(t)) > 0;
-        add(f.lights->emissive(t, b1, b2, direction, distance, back));
+        add(f.lights->emissive({origin, kUp}, t, b1, b2, direction, distance, back));
     }
 }
 
@@ -160,7 +160,7 @@ TEST(LightSet, DensitiesOfHitsAreThoseOfTheSamples) {
     for (int i = 0; i < 400000; ++i) {
         double sum = 0;
         const float u = random.unit();
-        const LightSample s = f.lights->sample_local(point, u, random.pair(), false);
+        const LightSample s = f.lights->sample_local({point, kUp}, u, random.pair(), false);
         const double cosine = s.direction.y;
         if (s.distance > 0.0f && cosine > 0)
             sum += s.weight.y * cosine * (s.pdf > 0 ? s.pdf / (s.pdf + cosine * kInvPi) : 1.0);
@@ -182,12 +182,13 @@ TEST(LightSet, EmissiveSamplesNameTheirTriangle) {
     const Fixture f(builder);
     bool seen[2] = {false, false};
     for (int i = 0; i < 100; ++i) {
-        const LightSample s = f.lights->sample_local({0, 0, 0}, static_cast<float>(i) / 100, {0.3f, 0.4f}, false);
+        const LightSample s =
+            f.lights->sample_local({{0, 0, 0}, kUp}, static_cast<float>(i) / 100, {0.3f, 0.4f}, false);
         ASSERT_TRUE(s.triangle == 2 || s.triangle == 3) << s.triangle;
         seen[s.triangle - 2] = true;
     }
     EXPECT_TRUE(seen[0] && seen[1]);
-    EXPECT_EQ(f.lights->emissive(0, 0.2f, 0.2f, {0, -1, 0}, 1, false).radiance, Vec3{});
+    EXPECT_EQ(f.lights->emissive({{0, 0, 0}, kUp}, 0, 0.2f, 0.2f, {0, -1, 0}, 1, false).radiance, Vec3{});
 }
 
 TEST(LightSet, PowersBeyondAllMeasureDoNotBreakTheChoice) {
@@ -200,7 +201,7 @@ TEST(LightSet, PowersBeyondAllMeasureDoNotBreakTheChoice) {
     builder.scene().lights = {point_light({0, 3, 0}, {1, 1, 1})};
     const Fixture f(builder);
     for (const float u : {0.0f, 0.5f, 0.9999999f})
-        EXPECT_GE(f.lights->sample_local({0, 0, 0}, u, {0.3f, 0.4f}, false).distance, 0.0f);
+        EXPECT_GE(f.lights->sample_local({{0, 0, 0}, kUp}, u, {0.3f, 0.4f}, false).distance, 0.0f);
 }
 
 TEST(LightSet, OccludersDoNotEmit) {
@@ -211,7 +212,7 @@ TEST(LightSet, OccludersDoNotEmit) {
     builder.scene().instances[0].node_class = NodeClass::occluder;
     const Fixture f(builder);
     EXPECT_TRUE(f.lights->empty());
-    EXPECT_EQ(f.lights->emissive(0, 0.2f, 0.2f, {0, 1, 0}, 1, false).radiance, Vec3{});
+    EXPECT_EQ(f.lights->emissive({{0, 0, 0}, kUp}, 0, 0.2f, 0.2f, {0, 1, 0}, 1, false).radiance, Vec3{});
 }
 
 TEST(LightSet, ADimLightIsChosenNowAndThenBesideABrightOne) {
@@ -220,7 +221,7 @@ TEST(LightSet, ADimLightIsChosenNowAndThenBesideABrightOne) {
                               point_light({0, 1, 0}, {1e-9f, 1e-9f, 1e-9f})};
     const Fixture f(builder);
     // Its share is the last unit of 2^24: nothing that a ray cannot hit is ever left out.
-    const LightSample s = f.lights->sample_local({0, 0, 0}, 0x1.fffffep-1f, {0.5f, 0.5f}, false);
+    const LightSample s = f.lights->sample_local({{0, 0, 0}, kUp}, 0x1.fffffep-1f, {0.5f, 0.5f}, false);
     EXPECT_NEAR(s.weight.y / (1e-9 * 0x1p24), 1.0, 1e-6);
 }
 
@@ -235,7 +236,8 @@ TEST(ArtistControls, DecideWhichLayersALightReaches) {
         const Fixture f(builder);
         const Vec2 u{0.4f, 0.6f};
         const auto sample = [&](bool bounced) {
-            return is_sun ? f.lights->sample_sun(0, u, bounced) : f.lights->sample_local({0, 0, 0}, 0.5f, u, bounced);
+            return is_sun ? f.lights->sample_sun(0, u, bounced)
+                          : f.lights->sample_local({{0, 0, 0}, kUp}, 0.5f, u, bounced);
         };
         EXPECT_EQ(sample(false).weight, Vec3{});
         EXPECT_EQ(sample(false).distance, 0.0f);
@@ -245,7 +247,7 @@ TEST(ArtistControls, DecideWhichLayersALightReaches) {
         const auto radiance = [&](bool b) {
             Vec3 sum{};
             if (is_sun) return f.lights->sun(0, bounced.direction, b).radiance;
-            f.lights->shapes_along({0, 0, 0}, bounced.direction, 10, b,
+            f.lights->shapes_along({{0, 0, 0}, kUp}, bounced.direction, 10, b,
                                    [&](const LightHit& hit) { sum += hit.radiance; });
             return sum;
         };
@@ -260,7 +262,7 @@ TEST(Shapes, AreMetOnlyBeforeTheSurfaceBehindThem) {
     const Fixture f(builder);
     const auto count = [&](float max_distance) {
         int n = 0;
-        f.lights->shapes_along({0, 0, 0}, kUp, max_distance, false, [&](const LightHit&) { ++n; });
+        f.lights->shapes_along({{0, 0, 0}, kUp}, kUp, max_distance, false, [&](const LightHit&) { ++n; });
         return n;
     };
     EXPECT_EQ(count(1.9f), 0);

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "math/constants.h"
+
 namespace lumel {
 
 PlanarPatch::PlanarPatch(Vec3 center, Vec3 half_u, Vec3 half_v, Vec3 facing)
@@ -12,6 +14,19 @@ PlanarPatch::PlanarPatch(Vec3 center, Vec3 half_u, Vec3 half_v, Vec3 facing)
     const float scale = dot(n, n) > 0.0f ? 1.0f / dot(n, n) : 0.0f;
     s_ = cross(half_v, n) * scale;
     t_ = cross(n, half_u) * scale;
+}
+
+LightBounds PlanarPatch::bounds(double power) const {
+    LightBounds b;
+    for (std::size_t c = 0; c < 3; ++c) {
+        const float reach = std::fabs(half_u_[c]) + std::fabs(half_v_[c]);
+        b.low[c] = center_[c] - reach;
+        b.high[c] = center_[c] + reach;
+    }
+    b.axis = normal_;
+    b.cos_facing = 1.0f;
+    b.intensity = power / double{kPi};  // towards the normal, Lambertian
+    return b;
 }
 
 double PlanarPatch::height(Vec3 point) const {

@@ -1,6 +1,7 @@
 // What rectangle and disc share: a flat patch spanned by two half axes, lit on one side.
 #pragma once
 
+#include "light/light_bounds.h"
 #include "light/light_sample.h"
 #include "lumel/vec.h"
 
@@ -13,6 +14,8 @@ public:
 
     // Area of the parallelogram (-1..1)^2.
     [[nodiscard]] double area() const { return area_; }
+    // Of a light of that power that fills the patch or a part of it.
+    [[nodiscard]] LightBounds bounds(double power) const;
     [[nodiscard]] Vec3 half_u() const { return half_u_; }
     [[nodiscard]] Vec3 half_v() const { return half_v_; }
     [[nodiscard]] Vec3 normal() const { return normal_; }

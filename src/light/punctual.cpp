@@ -22,10 +22,27 @@ PunctualLight::PunctualLight(const Light& light)
     cone_scale_ = 1.0f / std::max(0.001f, inner - outer);
     cone_offset_ = -outer * cone_scale_;
     // The squared ramp between the cones passes a third of what it would at full strength.
+    cos_inner_ = inner;
+    cos_ramp_ = static_cast<float>(sincos_radians(std::max(0.0f, light.outer_cone - light.inner_cone)).cosine);
     lit_share_ = 0.5f * (1.0f - inner) + (inner - outer) / 6.0f;
 }
 
 double PunctualLight::power() const { return 4.0 * kPi * lit_share_ * strength(intensity_); }
+
+LightBounds PunctualLight::bounds() const {
+    LightBounds b;
+    const Vec3 r{sphere_.radius, sphere_.radius, sphere_.radius};
+    b.low = sphere_.center - r;
+    b.high = sphere_.center + r;
+    b.axis = axis_;
+    b.cos_facing = spot_ ? cos_inner_ : -1.0f;
+    // A hair wider than the cone, against its rim being cut off by rounding.
+    b.cos_emission = spot_ ? cos_ramp_ - 1e-5f : 0.0f;
+    b.intensity = strength(intensity_);
+    if (range_ > 0.0f) b.reach = range_ * 1.0001f;
+    b.must_be_sampled = !can_be_hit();
+    return b;
+}
 
 float PunctualLight::attenuation(Vec3 point) const {
     const Vec3 from_light = point - sphere_.center;

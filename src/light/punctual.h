@@ -2,6 +2,7 @@
 // afar. Based on: the glTF extension KHR_lights_punctual (range window, spot cone).
 #pragma once
 
+#include "light/light_bounds.h"
 #include "light/light_sample.h"
 #include "light/sphere.h"
 
@@ -12,6 +13,7 @@ public:
     explicit PunctualLight(const Light& light);
 
     [[nodiscard]] double power() const;
+    [[nodiscard]] LightBounds bounds() const;
     [[nodiscard]] bool can_be_hit() const { return sphere_.radius > 0.0f; }
     [[nodiscard]] LightSample sample(Vec3 point, Vec2 u) const;
     [[nodiscard]] LightHit intersect(Vec3 origin, Vec3 direction) const;
@@ -28,7 +30,8 @@ private:
     float range_;
     bool spot_;
     float cone_scale_ = 0.0f, cone_offset_ = 1.0f;
-    float lit_share_ = 1.0f;  // of all directions
+    float lit_share_ = 1.0f;                     // of all directions
+    float cos_inner_ = -1.0f, cos_ramp_ = 1.0f;  // of the inner cone, and of the angle from it to the outer one
 };
 
 }  // namespace lumel

@@ -30,6 +30,8 @@ RectangleLight::RectangleLight(const Light& light)
 
 double RectangleLight::power() const { return double{kPi} * patch_.area() * strength(radiance_); }
 
+LightBounds RectangleLight::bounds() const { return patch_.bounds(power()); }
+
 RectangleLight::View RectangleLight::view_from(Vec3 point) const {
     const Vec3 to_center = patch_.center() - point;
     const double x = dot(to_center, x_axis_), y = dot(to_center, y_axis_);

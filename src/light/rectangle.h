@@ -13,6 +13,7 @@ public:
     explicit RectangleLight(const Light& light);
 
     [[nodiscard]] double power() const;
+    [[nodiscard]] LightBounds bounds() const;
     [[nodiscard]] bool can_be_hit() const { return true; }
     [[nodiscard]] LightSample sample(Vec3 point, Vec2 u) const;
     [[nodiscard]] LightHit intersect(Vec3 origin, Vec3 direction) const;

@@ -75,6 +75,15 @@ double SphereLight::power() const {
     return 4.0 * kPi * kPi * double{sphere_.radius} * sphere_.radius * strength(radiance_);
 }
 
+LightBounds SphereLight::bounds() const {
+    LightBounds b;
+    const Vec3 r{sphere_.radius, sphere_.radius, sphere_.radius};
+    b.low = sphere_.center - r;
+    b.high = sphere_.center + r;
+    b.intensity = power() / (4.0 * double{kPi});
+    return b;
+}
+
 LightSample SphereLight::sample(Vec3 point, Vec2 u) const {
     LightSample sample = sample_sphere(sphere_, point, u);
     sample.weight *= radiance_;

@@ -2,6 +2,7 @@
 // Based on: Shirley, Wang, Zimmerman 1996, "Monte Carlo Techniques for Direct Lighting Calculations".
 #pragma once
 
+#include "light/light_bounds.h"
 #include "light/light_sample.h"
 
 namespace lumel {
@@ -19,6 +20,7 @@ public:
     explicit SphereLight(const Light& light) : sphere_{light.position, light.radius}, radiance_(light.intensity) {}
 
     [[nodiscard]] double power() const;
+    [[nodiscard]] LightBounds bounds() const;
     [[nodiscard]] bool can_be_hit() const { return true; }
     [[nodiscard]] LightSample sample(Vec3 point, Vec2 u) const;
     [[nodiscard]] LightHit intersect(Vec3 origin, Vec3 direction) const;

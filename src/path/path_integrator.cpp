@@ -173,7 +173,7 @@ public:
                  value_of);
         if (lights.has_local())
             push(lane, Layer::direct, vertex,
-                 lights.sample_local(vertex.position, sampler.one(first_pair + kChoicePair),
+                 lights.sample_local({vertex.position, vertex.normal}, sampler.one(first_pair + kChoicePair),
                                      sampler.pair(first_pair + kLocalPair), bounced),
                  key, pdf_of, value_of);
     }
@@ -292,7 +292,7 @@ void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w
             auto& vertex = w.vertex[lane];
             const float distance = hit.missed() ? kInfiniteDistance : hit.t;
             if (lights.has_shapes())
-                lights.shapes_along(vertex.position, vertex.direction, distance, !first,
+                lights.shapes_along({vertex.position, vertex.normal}, vertex.direction, distance, !first,
                                     [&](const LightHit& light) { arrive(lane, Layer::direct, light); });
             if (first) sink.free_path(lane, vertex.direction, vertex.direction_pdf, distance, hit.missed());
             if (hit.missed()) {
@@ -308,7 +308,8 @@ void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w
             if (hit.back_face && !(triangle.flags & kDoubleSided)) continue;
             if (triangle.flags & kEmissive)
                 arrive(lane, Layer::direct,
-                       lights.emissive(hit.triangle, hit.b1, hit.b2, vertex.direction, hit.t, hit.back_face));
+                       lights.emissive({vertex.position, vertex.normal}, hit.triangle, hit.b1, hit.b2, vertex.direction,
+                                       hit.t, hit.back_face));
             if (bounce == options_.bounces || (triangle.flags & kOccluderOnly)) continue;
 
             // The path stands on a new surface.

@@ -1,0 +1,54 @@
+// Choosing one of many local lights for a point, near to in proportion to what each can bring there.
+// Based on: Conty Estevez, Kulla 2018, "Importance Sampling of Many Lights with Adaptive Tree Splitting" (bounds of
+// position and direction, cost of a split); Pharr, Jakob, Humphreys, "Physically Based Rendering" 4th ed., section
+// 12.6.3 (importance of a node).
+// Different here: intensities instead of powers, so that kinds of light compare; a reach, for lights that glTF cuts
+// off; and the chance of a light is a whole number of units of the random number, exact in both directions: no light
+// that must be sampled ever rounds to none, and what is divided by is how often it happens.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "light/light_bounds.h"
+
+namespace lumel {
+
+// Of the light at a receiver, up to a factor that all bounds share; zero only if nothing can come from there.
+double importance(const LightBounds& bounds, const Receiver& receiver);
+
+class LightTree {
+public:
+    LightTree() = default;
+    // At most kUnits / 2 lights. An intensity of zero is never chosen.
+    explicit LightTree(std::span<const LightBounds> lights);
+
+    static constexpr std::uint32_t kNoLight = 0xffffffffu;
+    struct Chosen {
+        std::uint32_t light = kNoLight;  // kNoLight: none of them lights the receiver
+        std::uint32_t units = 0;         // its chance, times kUnits
+    };
+    [[nodiscard]] Chosen choose(const Receiver& receiver, float u) const;
+    // What choose() would have stated for that light.
+    [[nodiscard]] std::uint32_t units_of(const Receiver& receiver, std::uint32_t light) const;
+
+    [[nodiscard]] std::size_t node_count() const { return nodes_.size(); }
+
+private:
+    struct Node {
+        LightBounds bounds;
+        std::uint32_t second = 0;        // the other child; the first one follows its parent
+        std::uint32_t light = kNoLight;  // of a leaf
+        std::uint32_t guaranteed = 0;    // lights below that must be sampled
+    };
+    class Builder;
+
+    [[nodiscard]] std::uint32_t first_share(const Node& node, std::uint32_t index, std::uint32_t units,
+                                            const Receiver& receiver) const;
+
+    std::vector<Node> nodes_;
+    std::vector<std::uint64_t> trail_;  // of each light: bit d says whether to take the second child at depth d
+};
+
+}  // namespace lumel

@@ -1,0 +1,200 @@
+#include "light/light_tree.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "math/discrete.h"
+#include "math/frame.h"
+#include "math/warp.h"
+#include "support/light_checks.h"
+
+namespace lumel {
+namespace {
+
+constexpr Vec3 kUp{0, 1, 0};
+
+LightBounds point_bounds(Vec3 at, double intensity) {
+    LightBounds b;
+    b.low = b.high = at;
+    b.intensity = intensity;
+    b.must_be_sampled = true;
+    return b;
+}
+
+LightBounds patch_bounds(Vec3 centre, float half, Vec3 normal, double intensity) {
+    LightBounds b;
+    b.low = centre - Vec3{half, half, half};
+    b.high = centre + Vec3{half, half, half};
+    b.axis = normal;
+    b.cos_facing = 1.0f;
+    b.intensity = intensity;
+    return b;
+}
+
+// Points, patches that face all ways, spots, things that reach a metre: in a cube of 10 m.
+std::vector<LightBounds> crowd(std::size_t count, std::uint32_t seed) {
+    test::Random random(seed);
+    std::vector<LightBounds> lights;
+    for (std::size_t i = 0; i < count; ++i) {
+        const Vec2 a = random.pair(), b = random.pair();
+        const Vec3 at = Vec3{a.x, a.y, b.x} * 10.0f;
+        const Vec2 u = random.pair();
+        const Vec3 axis = direction_from_z(1.0f - 2.0f * u.x, u.y);
+        LightBounds light =
+            i % 3 == 0 ? point_bounds(at, 0.1 + double{b.y}) : patch_bounds(at, 0.3f * b.y, axis, 0.01 + double{b.y});
+        if (i % 5 == 0) {
+            light.axis = axis;
+            light.cos_facing = 0.9f;
+            light.cos_emission = 0.8f;
+        }
+        if (i % 7 == 0) light.reach = 1.0f;
+        if (i % 11 == 0) light.both_sides = true;
+        lights.push_back(light);
+    }
+    return lights;
+}
+
+std::vector<Receiver> receivers(std::size_t count) {
+    test::Random random(99);
+    std::vector<Receiver> out;
+    for (std::size_t i = 0; i < count; ++i) {
+        const Vec2 a = random.pair(), u = random.pair();
+        out.push_back(
+            {Vec3{a.x, a.y, random.unit()} * 12.0f - Vec3{1, 1, 1}, direction_from_z(1.0f - 2.0f * u.x, u.y)});
+    }
+    return out;
+}
+
+// Every unit of the random number belongs to a light, and to no other than it is stated for.
+TEST(LightTree, StatesExactlyHowOftenEachLightIsChosen) {
+    for (const std::size_t count : {1u, 2u, 3u, 40u, 1000u}) {
+        const std::vector<LightBounds> lights = crowd(count, 3);
+        const LightTree tree(lights);
+        for (const Receiver& receiver : receivers(20)) {
+            // The lights' units, one after another in the order of the tree, fill the numbers from 0 on.
+            std::uint64_t unit = 0;
+            while (unit < kUnits) {
+                const LightTree::Chosen chosen = tree.choose(receiver, static_cast<float>(unit) * 0x1p-24f);
+                if (chosen.light == LightTree::kNoLight) break;
+                ASSERT_GT(chosen.units, 0u);
+                ASSERT_EQ(tree.units_of(receiver, chosen.light), chosen.units);
+                const LightTree::Chosen last =
+                    tree.choose(receiver, static_cast<float>(unit + chosen.units - 1) * 0x1p-24f);
+                ASSERT_EQ(last.light, chosen.light) << "the interval is shorter than stated";
+                unit += chosen.units;
+            }
+            // Numbers that choose nothing come in whole subtrees; those lights have no units.
+            std::uint64_t stated = 0;
+            for (std::uint32_t light = 0; light < count; ++light) stated += tree.units_of(receiver, light);
+            EXPECT_LE(stated, kUnits);
+            EXPECT_GE(stated, unit);
+        }
+    }
+}
+
+// What can light a receiver has a chance, however dim: else points and spots without a radius would be lost.
+TEST(LightTree, LeavesOutNoLightThatMustBeSampled) {
+    std::vector<LightBounds> lights = crowd(500, 4);
+    for (std::size_t i = 0; i < lights.size(); i += 2) lights[i].intensity *= 1e-12;
+    const LightTree tree(lights);
+    std::size_t lit = 0, dark = 0;
+    for (const Receiver& receiver : receivers(200))
+        for (std::uint32_t i = 0; i < lights.size(); ++i) {
+            const std::uint32_t units = tree.units_of(receiver, i);
+            if (!lights[i].must_be_sampled) continue;
+            const bool lights_it = importance(lights[i], receiver) > 0.0;
+            (lights_it ? lit : dark) += 1;
+            if (lights_it) {
+                ASSERT_GT(units, 0u) << i;
+            }
+        }
+    EXPECT_GT(lit, 1000u);
+    EXPECT_GT(dark, 1000u);
+}
+
+// The importance of a node is a bound in the sense that counts: zero only where all below it are.
+TEST(LightTree, AGroupIsDarkOnlyIfAllInItAre) {
+    const std::vector<LightBounds> lights = crowd(300, 5);
+    const LightTree tree(lights);
+    for (const Receiver& receiver : receivers(300)) {
+        double sum = 0;
+        for (const LightBounds& light : lights)
+            if (light.must_be_sampled) sum += importance(light, receiver);
+        const LightTree::Chosen chosen = tree.choose(receiver, 0.0f);
+        if (sum > 0.0) {
+            std::uint64_t units = 0;
+            for (std::uint32_t i = 0; i < lights.size(); ++i) units += tree.units_of(receiver, i);
+            EXPECT_GT(units, 0u);
+        } else if (chosen.light != LightTree::kNoLight) {
+            EXPECT_FALSE(lights[chosen.light].must_be_sampled);
+        }
+    }
+}
+
+// Zero importance promises darkness: no point of a patch sees the receiver from its lit side, above its horizon.
+TEST(Importance, OfZeroIsDarkness) {
+    test::Random random(6);
+    int zeros = 0;
+    for (int i = 0; i < 20000; ++i) {
+        const Vec2 u = random.pair(), v = random.pair();
+        const Vec3 normal = direction_from_z(1.0f - 2.0f * u.x, u.y);
+        const float half = 0.5f * random.unit();
+        const Vec3 centre = Vec3{v.x, v.y, random.unit()} * 4.0f - Vec3{2, 2, 2};
+        const Frame frame(normal);
+        LightBounds b = patch_bounds(centre, 0, normal, 1.0);
+        for (int k = 0; k < 4; ++k) {
+            const Vec3 corner = centre + frame.to_world({k & 1 ? half : -half, k & 2 ? half : -half, 0});
+            for (std::size_t c = 0; c < 3; ++c) {
+                b.low[c] = std::min(b.low[c], corner[c]);
+                b.high[c] = std::max(b.high[c], corner[c]);
+            }
+        }
+        const Receiver receiver{{0, 0, 0}, kUp};
+        if (importance(b, receiver) > 0.0) continue;
+        ++zeros;
+        for (int k = 0; k < 16; ++k) {
+            const Vec2 s = random.pair();
+            const Vec3 p = centre + frame.to_world({half * (2 * s.x - 1), half * (2 * s.y - 1), 0});
+            // A hair above zero is rounding.
+            EXPECT_LT(std::min(dot(p, kUp), -dot(p, normal)), 1e-5f);
+        }
+    }
+    EXPECT_GT(zeros, 2000);
+}
+
+TEST(LightTree, PrefersWhatIsNearAndFacesTheReceiver) {
+    const std::vector<LightBounds> lights{
+        patch_bounds({0, 1, 0}, 0.1f, {0, -1, 0}, 1.0), patch_bounds({0, 3, 0}, 0.1f, {0, -1, 0}, 1.0),
+        patch_bounds({1, 1, 0}, 0.1f, {0, 1, 0}, 1.0), patch_bounds({0, -1, 0}, 0.1f, {0, 1, 0}, 1.0)};
+    const LightTree tree(lights);
+    const Receiver receiver{{0, 0, 0}, kUp};
+    const double near = tree.units_of(receiver, 0), far = tree.units_of(receiver, 1);
+    EXPECT_GT(near, 5 * far);  // nine times as bright, where the group of both is looked at exactly
+    EXPECT_GT(far, 0);
+    EXPECT_EQ(tree.units_of(receiver, 2), 0u) << "faces away";
+    EXPECT_EQ(tree.units_of(receiver, 3), 0u) << "below the horizon";
+}
+
+TEST(LightTree, ManyLightsAtOnePlaceStayWithinTheTrail) {
+    std::vector<LightBounds> lights(5000, point_bounds({1, 2, 3}, 1.0));
+    // And a row whose gaps double: splits that always cut off one light.
+    for (int i = 0; i < 100; ++i) lights.push_back(point_bounds({std::ldexp(1.0f, i - 50), 0, 0}, 1.0));
+    const LightTree tree(lights);
+    const Receiver receiver{{0, -1, 0}, kUp};
+    std::uint64_t units = 0;
+    for (std::uint32_t i = 0; i < lights.size(); ++i) units += tree.units_of(receiver, i);
+    EXPECT_EQ(units, kUnits);
+}
+
+TEST(LightTree, OfNothingChoosesNothing) {
+    const LightTree none;
+    EXPECT_EQ(none.choose({{0, 0, 0}, kUp}, 0.5f).light, LightTree::kNoLight);
+    const LightTree dark(std::vector<LightBounds>{point_bounds({0, 1, 0}, 0.0)});
+    EXPECT_EQ(dark.choose({{0, 0, 0}, kUp}, 0.5f).light, LightTree::kNoLight);
+    EXPECT_EQ(dark.units_of({{0, 0, 0}, kUp}, 0), 0u);
+}
+
+}  // namespace
+}  // namespace lumel
