@@ -2,6 +2,7 @@
 import * as THREE from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { useLightmaps } from '/lightmap.js';
+import { asText, canvasError } from '/picture.js';
 
 function findCamera(root, name) {
   let found;
@@ -37,8 +38,6 @@ window.renderView = async ({ mode, view, width, height }) => {
   renderer.setSize(width, height);
   renderer.render(scene, camera);
   const png = renderer.domElement.toDataURL('image/png');
-  const bytes = new Uint8Array(pixels.buffer);
-  let text = '';
-  for (let i = 0; i < bytes.length; i += 32768) text += String.fromCharCode(...bytes.subarray(i, i + 32768));
-  return { pixels: btoa(text), png, counts };
+  const canvas_error = await canvasError(png, pixels, width, height);
+  return { pixels: asText(pixels), png, counts: { ...counts, canvas_error } };
 };

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# viewer_test.sh LUMEL SAMPLES SOURCE BINARY: bakes the sample and looks at it with stock three.js in a real browser.
+# viewer_test.sh LUMEL SAMPLES SOURCE BINARY: bakes the sample and looks at it with stock three.js and
+# Babylon.js in a real browser.
 # Skipped (77) without node, npm, a browser or the registry.
 set -euo pipefail
 lumel=$1 samples=$2 source=$3 work=$4
@@ -25,5 +26,6 @@ check() {
 }
 # Eight bits in sRGB: steps of about one percent.
 check --mode plain --max-median 0.02 --png plain.png
+check --viewer babylon --max-median 0.02 --png babylon.png
 # three.js takes the energy of its specular lobe off the diffuse light: some 3 percent on rough dielectrics.
 check --mode lightmap --max-median 0.05 --png lightmap.png
