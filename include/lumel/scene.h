@@ -90,7 +90,8 @@ struct Instance {
     std::uint32_t mesh = kNone;
     Affine transform;  // mesh to world
     NodeClass node_class = NodeClass::lightmap;
-    float density_scale = 1.0f;  // times the texel density of the bake
+    float density_scale = 1.0f;   // times the texel density of the bake
+    bool class_is_asked = false;  // by the file or the sidecar: bad charts do not change it
 };
 
 // ---- Lights ---------------------------------------------------------------------------------------------------------

@@ -192,9 +192,10 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
                                                   options.max_memory_bytes, report, context));
     }
     if (atlas.pages.empty())
-        return Error{
-            ErrorCode::invalid_input, "no surface of the scene gets lightmap texels", scene.source,
-            "every node is of another class than lightmap, or all its triangles are without area: see lumel info"};
+        return Error{ErrorCode::invalid_input, "no surface of the scene gets lightmap texels", scene.source,
+                     "every node is of another class than lightmap (lumel info lists them), has no area, or falls into "
+                     "charts far "
+                     "smaller than a texel: ask for more --texels-per-metre"};
     if (sink.layout) LUMEL_TRY_STATUS(sink.layout(geometry, charts, atlas));
 
     std::unique_ptr<Tracer> tracer;

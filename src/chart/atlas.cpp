@@ -17,23 +17,21 @@ Error cancelled_error() { return {ErrorCode::cancelled, "cancelled while packing
 // Placement ranges: as many as the instance's mesh has charts, none for instances without texels.
 std::vector<std::uint32_t> placement_ranges(const Scene& scene, const ChartSet& charts) {
     std::vector<std::uint32_t> first{0};
-    for (const Instance& instance : scene.instances) {
-        const bool lit = instance.node_class == NodeClass::lightmap;
-        first.push_back(first.back() +
-                        (lit ? static_cast<std::uint32_t>(charts.meshes[instance.mesh].charts.size()) : 0));
+    for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+        const std::size_t count = charts.meshes[scene.instances[i].mesh].charts.size();
+        first.push_back(first.back() + (charts.gets_texels(scene, i) ? static_cast<std::uint32_t>(count) : 0));
     }
     return first;
 }
 
-Atlas kept_atlas(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts, const ChartOptions& options,
-                 Context& context) {
+Atlas kept_atlas(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts,
+                 const ChartOptions& options) {
     Atlas atlas;
     atlas.first_placement = placement_ranges(scene, charts);
     const AtlasPage page = kept_page(scene, geometry, charts, options);
     atlas.pages.push_back(page);
     const ChartPlacement placement{0, {static_cast<float>(page.width), static_cast<float>(page.height)}, {}};
     atlas.placements.assign(atlas.first_placement.back(), placement);
-    report_bleeding(scene, charts, page, context.diagnostics);
     return atlas;
 }
 
@@ -159,7 +157,7 @@ private:
 
 Result<Atlas> make_atlas(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts,
                          const ChartOptions& options, Context& context) {
-    if (charts.scene_wide) return kept_atlas(scene, geometry, charts, options, context);
+    if (charts.scene_wide) return kept_atlas(scene, geometry, charts, options);
     return AtlasMaker(scene, charts, options, context).run();
 }
 

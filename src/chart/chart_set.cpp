@@ -3,16 +3,21 @@
 
 #include <algorithm>
 #include <numeric>
+#include <set>
+#include <string>
+#include <utility>
 
 #include "base/check.h"
 #include "base/parallel.h"
 #include "base/try.h"
+#include "chart/bad_charts.h"
 #include "chart/kept_layout.h"
 #include "chart/mesh_charts.h"
 #include "chart/parameterize.h"
 #include "chart/segment.h"
 #include "chart/topology.h"
 #include "chart/uv1.h"
+#include "chart/where.h"
 
 namespace lumel {
 namespace {
@@ -23,7 +28,7 @@ Error cancelled_error() { return {ErrorCode::cancelled, "cancelled while unwrapp
 struct UsedMeshes {
     std::vector<std::uint32_t> meshes;    // indices into Scene::meshes
     std::vector<std::uint32_t> instance;  // per mesh of the scene: the first lightmap instance, for messages
-    bool repeated = false;                // some mesh has two lightmap instances
+    std::uint32_t repeated = kNone;       // a lightmap instance whose mesh an earlier one has
 };
 
 UsedMeshes used_meshes(const Scene& scene) {
@@ -33,7 +38,7 @@ UsedMeshes used_meshes(const Scene& scene) {
         if (scene.instances[i].node_class != NodeClass::lightmap) continue;
         std::uint32_t& first = used.instance[scene.instances[i].mesh];
         if (first != kNone) {
-            used.repeated = true;
+            if (used.repeated == kNone) used.repeated = i;
         } else {
             first = i;
             used.meshes.push_back(scene.instances[i].mesh);
@@ -44,11 +49,6 @@ UsedMeshes used_meshes(const Scene& scene) {
         return na != nb ? na > nb : a < b;
     });
     return used;
-}
-
-std::string node_name(const Scene& scene, std::uint32_t instance) {
-    const std::string& name = scene.instances[instance].name;
-    return name.empty() ? "node " + std::to_string(instance) : "node '" + name + "'";
 }
 
 class ChartMaker {
@@ -69,6 +69,7 @@ public:
         if (kept) return std::move(charts_);
         std::vector<std::uint32_t> own;
         if (!keep_mesh_layouts(own) || !unwrap(own)) return cancelled_error();
+        demote_bad_charts(scene_, options_, charts_, context_.diagnostics);
         return std::move(charts_);
     }
 
@@ -82,8 +83,7 @@ private:
         });
     }
 
-    // ---- One layout for the scene
-    // ------------------------------------------------------------------------------------
+    // ---- One layout for the scene -----------------------------------------------------------------------------------
 
     // Keeps TEXCOORD_1 of the whole scene as one atlas where that was asked or is possible.
     Result<bool> keep_scene_wide() {
@@ -92,19 +92,34 @@ private:
         for (const std::uint32_t m : used_.meshes) {
             const std::string reason = judge_uv1_coordinates(mesh(m), topology_[m].area);
             if (reason.empty()) continue;
-            if (!asked) return false;
+            if (!asked) return no_atlas(node_and_mesh(scene_, used_.instance[m]) + ": " + reason);
             return Error{ErrorCode::usage, "TEXCOORD_1 cannot be kept as one atlas of the scene: " + reason,
-                         node_name(scene_, used_.instance[m]), "use --uv1 mesh or --uv1 ignore"};
+                         node_and_mesh(scene_, used_.instance[m]), "use --uv1 mesh or --uv1 ignore"};
         }
-        if (used_.repeated && !asked) return false;  // would overlap itself: no need to search
+        if (used_.repeated != kNone && !asked)  // would overlap itself: no need to search
+            return no_atlas(node_and_mesh(scene_, used_.repeated) + " shares its mesh with another node");
         const std::vector<UvOverlap> overlaps = scene_overlaps();
-        if (!overlaps.empty() && !asked) return false;
-        report_overlaps(overlaps);
+        if (!overlaps.empty() && !asked) {
+            not_an_atlas_ = overlap_texts(between_nodes(overlaps));
+            if (not_an_atlas_.empty()) not_an_atlas_ = overlap_texts({overlaps[0]});
+            return false;
+        }
+        report_overlaps(
+            "pairs of triangles overlap in TEXCOORD_1, which was kept as asked: they share texels, which "
+            "hold the light of both; use --uv1 mesh or --uv1 ignore, or lay them out anew",
+            overlaps);
         for (const std::uint32_t m : used_.meshes) charts_.meshes[m] = uv1_islands(mesh(m), topology_[m].area, 1.0f);
         charts_.scene_wide = true;
         const AtlasPage page = kept_page(scene_, geometry_, charts_, options_);
-        merge_charts_sharing_texels(scene_, charts_, page);
+        const std::vector<ChartContact> contacts = find_contacts(scene_, geometry_, charts_, page);
+        merge_contacts(scene_, contacts, charts_);
+        report_bleeding(scene_, contacts, page, context_.diagnostics);
         return true;
+    }
+
+    bool no_atlas(std::string why) {
+        not_an_atlas_ = {std::move(why)};
+        return false;
     }
 
     // Overlapping pairs over all lightmap instances.
@@ -127,51 +142,91 @@ private:
         return overlaps;
     }
 
-    void report_overlaps(const std::vector<UvOverlap>& overlaps) {
-        for (const UvOverlap& o : overlaps)
-            context_.diagnostics.add("uv-overlap", "pairs of triangles overlap in TEXCOORD_1",
-                                     node_name(scene_, o.instance_a) + " triangle " + std::to_string(o.triangle_a) +
-                                         " and " + node_name(scene_, o.instance_b) + " triangle " +
-                                         std::to_string(o.triangle_b));
+    [[nodiscard]] static std::vector<UvOverlap> between_nodes(std::vector<UvOverlap> overlaps) {
+        std::erase_if(overlaps, [](const UvOverlap& o) { return o.instance_a == o.instance_b; });
+        return overlaps;
     }
 
-    // ---- One layout per mesh
-    // -----------------------------------------------------------------------------------------
+    // The first pair of each two nodes before all others: few are shown, and they should tell of all nodes.
+    [[nodiscard]] std::vector<std::string> overlap_texts(const std::vector<UvOverlap>& overlaps) const {
+        std::set<std::pair<std::uint32_t, std::uint32_t>> met;
+        std::vector<std::string> firsts, others;
+        for (const UvOverlap& o : overlaps) {
+            const bool is_first = met.emplace(o.instance_a, o.instance_b).second;
+            (is_first ? firsts : others).push_back(overlap_text(o));
+        }
+        firsts.insert(firsts.end(), others.begin(), others.end());
+        return firsts;
+    }
 
-    // Meshes whose TEXCOORD_1 is fit keep its islands; the others are listed in `own`. False: cancelled.
+    [[nodiscard]] std::string overlap_text(const UvOverlap& o) const {
+        const auto corners = [&](std::uint32_t instance, std::uint32_t t) {
+            const Mesh& m = mesh(scene_.instances[instance].mesh);
+            const Triangle& v = m.triangles[t];
+            return UvTriangle{m.uv1[v[0]], m.uv1[v[1]], m.uv1[v[2]]};
+        };
+        const Vec2 where = overlap_centre(corners(o.instance_a, o.triangle_a), corners(o.instance_b, o.triangle_b));
+        const std::string a = std::to_string(o.triangle_a), b = std::to_string(o.triangle_b);
+        const std::string at = " at UV " + uv_text(where);
+        if (o.instance_a == o.instance_b)
+            return node_and_mesh(scene_, o.instance_a) + " triangles " + a + " and " + b + at;
+        return node_and_mesh(scene_, o.instance_a) + " triangle " + a + " and " + node_and_mesh(scene_, o.instance_b) +
+               " triangle " + b + at;
+    }
+
+    void report_overlaps(const char* message, const std::vector<UvOverlap>& overlaps) {
+        for (const std::string& text : overlap_texts(overlaps)) context_.diagnostics.add("uv-overlap", message, text);
+    }
+
+    // ---- One layout per mesh ----------------------------------------------------------------------------------------
+
+    // Meshes whose TEXCOORD_1 is fit keep its islands; the others are listed in `own`. Where that was asked, overlaps
+    // are no reason: islands on top of each other are packed apart. False: cancelled.
     bool keep_mesh_layouts(std::vector<std::uint32_t>& own) {
         if (options_.uv1 == Uv1Policy::ignore) {
             own = used_.meshes;
             return true;
         }
+        const bool asked = options_.uv1 == Uv1Policy::mesh;
         std::vector<Uv1Verdict> verdicts(scene_.meshes.size());
         const bool done = parallel_for(context_, used_.meshes.size(), 1, [&](const ChunkRange& range) {
             const std::uint32_t m = used_.meshes[range.begin];
             const std::vector<double>& areas = topology_[m].area;
             verdicts[m] = judge_uv1(mesh(m), areas);
-            if (verdicts[m].fit())
+            if (verdicts[m].fit() || (asked && !verdicts[m].overlaps.empty()))
                 charts_.meshes[m] = uv1_islands(mesh(m), areas, static_cast<float>(uv1_scale(mesh(m), areas)));
         });
+        if (!done) return false;
+        std::vector<UvOverlap> rejected, kept;
+        bool any_kept = false;
+        for (std::uint32_t m = 0; m < scene_.meshes.size(); ++m) {
+            const std::uint32_t i = used_.instance[m];
+            if (i == kNone) continue;
+            const bool keeps = charts_.meshes[m].from_uv1;
+            any_kept |= keeps;
+            for (const auto& [a, b] : verdicts[m].overlaps) (keeps ? kept : rejected).push_back({i, a, i, b});
+            if (!keeps && !mesh(m).uv1.empty())
+                context_.diagnostics.add("uv1-rejected",
+                                         "TEXCOORD_1 is not fit for a lightmap; charts were made instead",
+                                         node_and_mesh(scene_, i) + ": " + verdicts[m].reason);
+        }
         for (const std::uint32_t m : used_.meshes)
-            if (!verdicts[m].fit()) own.push_back(m);
-        std::vector<std::uint32_t> by_index = own;
-        std::sort(by_index.begin(), by_index.end());
-        for (const std::uint32_t m : by_index)
-            if (!mesh(m).uv1.empty()) report_rejected(m, verdicts[m]);
-        return done;
+            if (!charts_.meshes[m].from_uv1) own.push_back(m);
+        report_overlaps("pairs of triangles overlap in TEXCOORD_1; charts were made for these meshes", rejected);
+        report_overlaps(
+            "pairs of triangles overlap in TEXCOORD_1, which was kept as asked: charts were packed apart, "
+            "but triangles of one chart share texels, which hold the light of both",
+            kept);
+        if (any_kept)
+            for (const std::string& why : not_an_atlas_)
+                context_.diagnostics.add("uv1-repacked",
+                                         "TEXCOORD_1 is no atlas of the whole scene; where it is fit the charts of a "
+                                         "mesh were kept, and all were packed anew",
+                                         why);
+        return true;
     }
 
-    void report_rejected(std::uint32_t m, const Uv1Verdict& verdict) {
-        const std::uint32_t i = used_.instance[m];
-        context_.diagnostics.add("uv1-rejected", "TEXCOORD_1 is not fit for a lightmap; charts were made instead",
-                                 node_name(scene_, i) + ": " + verdict.reason);
-        std::vector<UvOverlap> overlaps;
-        for (const auto& [a, b] : verdict.overlaps) overlaps.push_back({i, a, i, b});
-        report_overlaps(overlaps);
-    }
-
-    // ---- Charts of our own
-    // -------------------------------------------------------------------------------------------
+    // ---- Charts of our own ------------------------------------------------------------------------------------------
 
     struct Job {
         std::uint32_t mesh;
@@ -220,7 +275,7 @@ private:
             charts_.meshes[m] = assemble_charts(mesh(m).triangles.size(), std::move(flat));
             if (fallbacks > 0)
                 context_.diagnostics.add("unwrap-fallback", "clusters were cut by the sides of a box, as no map fitted",
-                                         node_name(scene_, used_.instance[m]), fallbacks);
+                                         node_and_mesh(scene_, used_.instance[m]), fallbacks);
         }
     }
 
@@ -231,6 +286,7 @@ private:
     UsedMeshes used_;
     std::vector<MeshTopology> topology_;
     ChartSet charts_;
+    std::vector<std::string> not_an_atlas_;  // why TEXCOORD_1 was not kept as one atlas of the scene
 };
 
 }  // namespace

@@ -31,6 +31,15 @@ struct MeshCharts {
 struct ChartSet {
     std::vector<MeshCharts> meshes;  // one per Scene::meshes; empty charts where no instance wants texels
     bool scene_wide = false;         // TEXCOORD_1 is one atlas of the whole scene and is kept unchanged
+    std::vector<bool> demoted;       // per Scene::instances: of class volume because its charts are bad. Empty: none
+
+    // Which class an instance has, now that its charts are known.
+    [[nodiscard]] NodeClass class_of(const Scene& scene, std::size_t instance) const {
+        return !demoted.empty() && demoted[instance] ? NodeClass::volume : scene.instances[instance].node_class;
+    }
+    [[nodiscard]] bool gets_texels(const Scene& scene, std::size_t instance) const {
+        return class_of(scene, instance) == NodeClass::lightmap;
+    }
 };
 
 // uv_texels = uv_chart * scale + offset, in texels of `page` (texel centres at i + 0.5).
@@ -72,20 +81,22 @@ struct ChartOptions {
     double texel_budget = 250000.0;                             // texels, where no density is asked
 };
 
-// Overlaps that the layout itself has: two triangles of different charts, or of one chart, that share texels.
+// Two triangles of a TEXCOORD_1 that lie on top of each other.
 struct UvOverlap {
     std::uint32_t instance_a = 0, triangle_a = 0;  // mesh triangles
     std::uint32_t instance_b = 0, triangle_b = 0;
 };
 
 // Charts of every mesh some lightmap instance uses. Deterministic for any thread count.
-// Diagnostics: "uv1-rejected" (why a file's TEXCOORD_1 was not kept), "uv-overlap", "unwrap-fallback". Errors: usage
-// where Uv1Policy::scene was asked and some TEXCOORD_1 is missing or leaves [0, 1].
+// Diagnostics: "uv1-rejected" (why a mesh's TEXCOORD_1 was not kept), "uv1-repacked" (why it was not kept as one atlas
+// of the scene), "uv-overlap" (pairs of triangles), "uv-bleeding" (pairs of charts of a kept atlas that share texels
+// under bilinear filtering), "unwrap-fallback", "bad-charts" (instances that got class volume: chart/bad_charts.h).
+// Errors: usage where Uv1Policy::scene was asked and some TEXCOORD_1 is missing or leaves [0, 1].
 Result<ChartSet> make_charts(const Scene& scene, const WorldGeometry& geometry, const ChartOptions& options,
                              Context& context);
 
 // Places the charts of every lightmap instance. Errors: usage where they cannot fit the asked resolution.
-// Diagnostics: "uv-bleeding" (nodes of a kept layout that share texels), "chart-clamped" (charts larger than a page).
+// Diagnostics: "chart-clamped" (charts larger than a page).
 Result<Atlas> make_atlas(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts,
                          const ChartOptions& options, Context& context);
 

@@ -117,7 +117,7 @@ std::vector<ChartInstance> chart_instances(const Scene& scene, const ChartSet& c
     std::vector<ChartInstance> out;
     for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
         const Instance& instance = scene.instances[i];
-        if (instance.node_class != NodeClass::lightmap) continue;
+        if (!charts.gets_texels(scene, i)) continue;
         const MeshCharts& mesh_charts = charts.meshes[instance.mesh];
         const bool even = scales_evenly(instance.transform);
         const double scale = mean_scale(instance.transform);

@@ -2,16 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <string>
+#include <utility>
 
 #include "chart/chart_mask.h"
 #include "chart/mesh_charts.h"
+#include "chart/where.h"
 
 namespace lumel {
 namespace {
 
-// Calls visit(instance, chart, texel) for every texel of the page that a chart of a lightmap instance can touch.
+// Calls visit(instance, mesh triangle, x, y) for every texel of the page that a chart of a lightmap instance can touch,
+// chart by chart; a texel as often as triangles of the chart touch it.
 template <class Visit>
 void for_each_texel(const Scene& scene, const ChartSet& charts, AtlasPage page, const Visit& visit) {
     const TexelMap map{double(page.width), double(page.height), 0.0, 0.0};
@@ -21,10 +25,49 @@ void for_each_texel(const Scene& scene, const ChartSet& charts, AtlasPage page, 
         for (const std::uint32_t t : mesh.order)
             for_each_mask_span(mesh.uv[t], map, page.width, page.height,
                                [&](std::uint32_t y, std::uint32_t x0, std::uint32_t x1) {
-                                   for (std::uint32_t x = x0; x < x1; ++x)
-                                       visit(i, mesh.chart_of_triangle[t], std::size_t{y} * page.width + x);
+                                   for (std::uint32_t x = x0; x < x1; ++x) visit(i, t, x, y);
                                });
     }
+}
+
+// ---- Is it one surface? ---------------------------------------------------------------------------------------------
+
+// Where the plane of a triangle puts a point of the layout, and how long a step of one texel is there.
+struct PlanePoint {
+    double p[3];
+    double texel = 0.0;  // metres
+};
+
+PlanePoint on_plane(const std::array<Vec3, 3>& corners, const UvTriangle& uv, double u, double v, AtlasPage page) {
+    const double cross = uv_cross(uv);
+    const double du = u - uv[0].x, dv = v - uv[0].y;
+    const double b1 = (du * (double{uv[2].y} - uv[0].y) - dv * (double{uv[2].x} - uv[0].x)) / cross;
+    const double b2 = (dv * (double{uv[1].x} - uv[0].x) - du * (double{uv[1].y} - uv[0].y)) / cross;
+    PlanePoint out{};
+    for (std::size_t c = 0; c < 3; ++c)
+        out.p[c] =
+            corners[0][c] + b1 * (double{corners[1][c]} - corners[0][c]) + b2 * (double{corners[2][c]} - corners[0][c]);
+    const double area = double{length(lumel::cross(corners[1] - corners[0], corners[2] - corners[0]))};
+    out.texel = std::sqrt(area / (std::abs(cross) * page.width * page.height));
+    return out;
+}
+
+// Charts that a layout cut for no reason of light (tiles of one floor side by side) go on in each other: at the texel
+// both lie at one place, within a texel, and face one way, within 30 degrees.
+bool goes_on(const WorldGeometry& geometry, const ChartSet& charts, const Scene& scene, std::uint32_t a,
+             std::uint32_t b, std::uint32_t x, std::uint32_t y, AtlasPage page) {
+    constexpr float kOneWay = 0.8660254f;
+    if (dot(geometry.geometric_normal(a), geometry.geometric_normal(b)) < kOneWay) return false;
+    const auto at = [&](std::uint32_t w) {
+        const WorldTriangle& t = geometry.triangles[w];
+        const UvTriangle& uv = charts.meshes[scene.instances[t.instance].mesh].uv[t.mesh_triangle];
+        return on_plane(geometry.corners(w), uv, (x + 0.5) / page.width, (y + 0.5) / page.height, page);
+    };
+    const PlanePoint pa = at(a), pb = at(b);
+    double apart = 0.0;
+    for (std::size_t c = 0; c < 3; ++c) apart += (pa.p[c] - pb.p[c]) * (pa.p[c] - pb.p[c]);
+    const double texel = std::min(pa.texel, pb.texel);
+    return apart <= texel * texel;
 }
 
 }  // namespace
@@ -49,7 +92,53 @@ AtlasPage kept_page(const Scene& scene, const WorldGeometry& geometry, const Cha
     return {size, size};
 }
 
-void merge_charts_sharing_texels(const Scene& scene, ChartSet& charts, AtlasPage page) {
+std::vector<ChartContact> find_contacts(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts,
+                                        AtlasPage page) {
+    constexpr std::uint64_t kNoPair = ~std::uint64_t{0};
+    struct Texel {
+        std::uint32_t owner = kNone;   // the first world triangle here
+        std::uint32_t latest = kNone;  // the chart that was counted last
+    };
+    std::vector<Texel> texels(std::size_t{page.width} * page.height);
+    std::vector<std::uint32_t> first{0};  // charts of all instances in one row
+    for (const Instance& instance : scene.instances)
+        first.push_back(first.back() + static_cast<std::uint32_t>(charts.meshes[instance.mesh].charts.size()));
+    const auto side_of = [&](std::uint32_t world_triangle) {
+        const WorldTriangle& t = geometry.triangles[world_triangle];
+        const MeshCharts& mesh = charts.meshes[scene.instances[t.instance].mesh];
+        return ChartContact::Side{t.instance, mesh.chart_of_triangle[t.mesh_triangle], t.mesh_triangle};
+    };
+
+    std::map<std::uint64_t, ChartContact> contacts;  // by the two charts
+    std::uint64_t pair = kNoPair;                    // neighbouring texels mostly are of one pair
+    ChartContact* contact = nullptr;
+    for_each_texel(scene, charts, page, [&](std::uint32_t i, std::uint32_t t, std::uint32_t x, std::uint32_t y) {
+        Texel& texel = texels[std::size_t{y} * page.width + x];
+        const std::uint32_t world = geometry.first_triangle[i] + t;
+        const std::uint32_t chart = first[i] + charts.meshes[scene.instances[i].mesh].chart_of_triangle[t];
+        if (texel.owner == kNone) texel = {world, chart};
+        if (texel.latest == chart) return;
+        texel.latest = chart;
+        const ChartContact::Side a = side_of(texel.owner), b = side_of(world);
+        const std::uint64_t key = std::uint64_t{first[a.instance] + a.chart} << 32 | chart;
+        if (key != pair) {
+            pair = key;
+            contact = &contacts[key];
+        }
+        const bool foreign = !goes_on(geometry, charts, scene, texel.owner, world, x, y, page);
+        if (contact->texels == 0 || (foreign && contact->foreign == 0)) {
+            contact->a = a, contact->b = b;
+            contact->texel_x = x, contact->texel_y = y;
+        }
+        ++contact->texels;
+        contact->foreign += foreign ? 1 : 0;
+    });
+    std::vector<ChartContact> out;
+    for (const auto& [key, found] : contacts) out.push_back(found);
+    return out;
+}
+
+void merge_contacts(const Scene& scene, const std::vector<ChartContact>& contacts, ChartSet& charts) {
     std::vector<std::uint32_t> first(charts.meshes.size() + 1, 0);  // charts of all meshes in one row
     for (std::size_t m = 0; m < charts.meshes.size(); ++m)
         first[m + 1] = first[m] + static_cast<std::uint32_t>(charts.meshes[m].charts.size());
@@ -59,16 +148,12 @@ void merge_charts_sharing_texels(const Scene& scene, ChartSet& charts, AtlasPage
         while (root[c] != c) c = root[c] = root[root[c]];
         return c;
     };
-    // The first chart at each texel. Of two meshes the first keeps the texel: nodes are never merged.
-    std::vector<std::uint32_t> owner(std::size_t{page.width} * page.height, kNone);
-    for_each_texel(scene, charts, page, [&](std::uint32_t i, std::uint32_t chart, std::size_t texel) {
-        const std::uint32_t mesh = scene.instances[i].mesh, self = first[mesh] + chart;
-        std::uint32_t& o = owner[texel];
-        if (o == kNone) o = self;
-        if (o == self || o < first[mesh] || o >= first[mesh + 1]) return;
-        const std::uint32_t a = find(o), b = find(self);
+    for (const ChartContact& contact : contacts) {
+        if (contact.a.instance != contact.b.instance) continue;
+        const std::uint32_t base = first[scene.instances[contact.a.instance].mesh];
+        const std::uint32_t a = find(base + contact.a.chart), b = find(base + contact.b.chart);
         root[std::max(a, b)] = std::min(a, b);
-    });
+    }
     for (std::size_t m = 0; m < charts.meshes.size(); ++m) {
         MeshCharts& mesh = charts.meshes[m];
         std::vector<std::uint32_t> number(mesh.charts.size(), kNone);
@@ -84,20 +169,26 @@ void merge_charts_sharing_texels(const Scene& scene, ChartSet& charts, AtlasPage
     }
 }
 
-void report_bleeding(const Scene& scene, const ChartSet& charts, AtlasPage page, Diagnostics& diagnostics) {
-    std::vector<std::uint32_t> owner(std::size_t{page.width} * page.height, kNone);
-    std::vector<bool> told(owner.size(), false);
-    for_each_texel(scene, charts, page, [&](std::uint32_t i, std::uint32_t, std::size_t texel) {
-        if (owner[texel] == kNone) owner[texel] = i;
-        if (owner[texel] == i || told[texel]) return;
-        told[texel] = true;
+void report_bleeding(const Scene& scene, std::vector<ChartContact> contacts, AtlasPage page, Diagnostics& diagnostics) {
+    std::erase_if(contacts, [](const ChartContact& c) { return c.foreign == 0; });
+    std::stable_sort(contacts.begin(), contacts.end(),
+                     [](const ChartContact& x, const ChartContact& y) { return x.foreign > y.foreign; });
+    for (const ChartContact& c : contacts) {
+        const auto side = [&](const ChartContact::Side& s) {
+            return node_and_mesh(scene, s.instance) + " chart " + std::to_string(s.chart) + " triangle " +
+                   std::to_string(s.triangle);
+        };
+        const Vec2 uv{(static_cast<float>(c.texel_x) + 0.5f) / static_cast<float>(page.width),
+                      (static_cast<float>(c.texel_y) + 0.5f) / static_cast<float>(page.height)};
         diagnostics.add("uv-bleeding",
-                        "texels are shared by charts of different nodes under bilinear filtering; the kept layout has "
-                        "too little padding for this page size",
-                        "texel (" + std::to_string(texel % page.width) + ", " + std::to_string(texel / page.width) +
-                            "): node '" + scene.instances[owner[texel]].name + "' and node '" +
-                            scene.instances[i].name + "'");
-    });
+                        "texels are read by two charts of TEXCOORD_1 under bilinear filtering, so that light of one "
+                        "shows on the other; the layout was kept as it is: give it more padding, ask for a higher "
+                        "--resolution, or take --uv1 mesh to have its charts packed anew",
+                        side(c.a) + " and " + side(c.b) + ": " + std::to_string(c.foreign) +
+                            (c.foreign == 1 ? " texel" : " texels") + " of " + std::to_string(page.width) + "x" +
+                            std::to_string(page.height) + " at UV " + uv_text(uv),
+                        c.foreign);
+    }
 }
 
 }  // namespace lumel

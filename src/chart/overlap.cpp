@@ -136,6 +136,38 @@ double uv_altitude(const UvTriangle& t) {
     return longest > 0.0 ? std::abs(uv_cross(t)) / std::sqrt(longest) : 0.0;
 }
 
+Vec2 overlap_centre(const UvTriangle& a, const UvTriangle& b) {
+    // Sutherland and Hodgman: b cut by the three edges of a; then the mean of the corners that are left.
+    struct Point {
+        double x, y;
+    };
+    std::vector<Point> left, cut;
+    for (const Vec2 p : b) left.push_back({p.x, p.y});
+    const double side = uv_cross(a) < 0.0 ? -1.0 : 1.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec2 from = a[k], to = a[(k + 1) % 3];
+        const auto inside = [&](Point p) {
+            return side * ((double{to.x} - from.x) * (p.y - from.y) - (double{to.y} - from.y) * (p.x - from.x));
+        };
+        cut.clear();
+        for (std::size_t i = 0; i < left.size(); ++i) {
+            const Point p = left[i], q = left[(i + 1) % left.size()];
+            const double dp = inside(p), dq = inside(q);
+            if (dp >= 0.0) cut.push_back(p);
+            if ((dp < 0.0) != (dq < 0.0)) {
+                const double t = dp / (dp - dq);
+                cut.push_back({p.x + t * (q.x - p.x), p.y + t * (q.y - p.y)});
+            }
+        }
+        std::swap(left, cut);
+    }
+    if (left.empty()) return (a[0] + a[1] + a[2]) * (1.0f / 3.0f);
+    double x = 0.0, y = 0.0;
+    for (const Point p : left) x += p.x, y += p.y;
+    const auto n = static_cast<double>(left.size());
+    return {static_cast<float>(x / n), static_cast<float>(y / n)};
+}
+
 OverlapSearch find_overlaps(std::span<const UvTriangle> triangles, const OverlapTolerance& tolerance,
                             std::size_t max_pairs) {
     BoxTree tree(triangles);

@@ -40,4 +40,7 @@ inline double uv_cross(const UvTriangle& t) {
 // Smallest altitude.
 double uv_altitude(const UvTriangle& t);
 
+// The middle of what two overlapping triangles share: where to look for it.
+Vec2 overlap_centre(const UvTriangle& a, const UvTriangle& b);
+
 }  // namespace lumel

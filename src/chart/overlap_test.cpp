@@ -96,6 +96,15 @@ TEST(Overlap, ToleranceIsTheNarrowerOfBoth) {
     EXPECT_EQ(find_overlaps(std::vector{tiny, tiny}, {0x1p-20, 0.01, 0.1}, 9).pairs.size(), 1u);
 }
 
+TEST(Overlap, CentreIsInTheMiddleOfWhatIsShared) {
+    // The square [0.5, 1] x [0, 0.5] cut by the diagonal of the first: corners (0.5, 0), (1, 0), (0.5, 0.5).
+    const UvTriangle a{{{0, 0}, {1, 0}, {0, 1}}}, b{{{0.5f, 0}, {0.5f, 2}, {2.5f, 0}}};
+    for (const Vec2 centre : {overlap_centre(a, b), overlap_centre(b, a), overlap_centre({a[0], a[2], a[1]}, b)}) {
+        EXPECT_NEAR(centre.x, 2.0f / 3.0f, 1e-6f);
+        EXPECT_NEAR(centre.y, 1.0f / 6.0f, 1e-6f);
+    }
+}
+
 // A palette: all triangles in one place make n^2 / 2 pairs; the search must stop at its limit, and triangles without
 // area must not be compared at all.
 TEST(Overlap, StopsAtTheLimit) {

@@ -16,7 +16,7 @@ constexpr double kMaxCollapsedArea = 1e-3;  // share of the surface that may hav
 
 bool inside(Vec2 p) { return p.x >= -kBorder && p.y >= -kBorder && p.x <= 1.0f + kBorder && p.y <= 1.0f + kBorder; }
 
-// Triangles with the same corner in UV belong together.
+// Triangles with the same corner belong together.
 class Islands {
 public:
     explicit Islands(std::size_t triangles) : root_(triangles) { std::iota(root_.begin(), root_.end(), 0u); }
@@ -33,10 +33,13 @@ private:
     std::vector<std::uint32_t> root_;
 };
 
+// In UV and in space.
 struct Corner {
-    float x, y;
+    Vec2 uv;
+    Vec3 p;
     std::uint32_t triangle;
-    bool operator<(const Corner& o) const { return std::tie(x, y, triangle) < std::tie(o.x, o.y, o.triangle); }
+    [[nodiscard]] auto key() const { return std::tie(uv.x, uv.y, p.x, p.y, p.z); }
+    bool operator<(const Corner& o) const { return key() != o.key() ? key() < o.key() : triangle < o.triangle; }
 };
 
 }  // namespace
@@ -106,12 +109,11 @@ MeshCharts uv1_islands(const Mesh& mesh, const std::vector<double>& areas, float
     std::vector<Corner> corners;
     for (std::uint32_t t = 0; t < areas.size(); ++t) {
         if (areas[t] == 0.0) continue;
-        for (const std::uint32_t v : mesh.triangles[t]) corners.push_back({mesh.uv1[v].x, mesh.uv1[v].y, t});
+        for (const std::uint32_t v : mesh.triangles[t]) corners.push_back({mesh.uv1[v], mesh.positions[v], t});
     }
     std::sort(corners.begin(), corners.end());
     for (std::size_t i = 1; i < corners.size(); ++i)
-        if (corners[i].x == corners[i - 1].x && corners[i].y == corners[i - 1].y)
-            islands.unite(corners[i].triangle, corners[i - 1].triangle);
+        if (corners[i].key() == corners[i - 1].key()) islands.unite(corners[i].triangle, corners[i - 1].triangle);
 
     MeshCharts charts;
     charts.from_uv1 = true;

@@ -33,7 +33,8 @@ Uv1Verdict judge_uv1(const Mesh& mesh, const std::vector<double>& areas);
 // The parts of the verdict that one triangle list cannot share with another: everything but overlaps.
 std::string judge_uv1_coordinates(const Mesh& mesh, const std::vector<double>& areas);
 
-// Islands (triangles that share corners in UV) as charts, coordinates times `scale`.
+// Islands as charts, coordinates times `scale`. Triangles are of one island where they share a corner in UV and in
+// space: what only touches in the layout is two.
 MeshCharts uv1_islands(const Mesh& mesh, const std::vector<double>& areas, float scale);
 
 // sqrt(surface area / UV area) of the triangles that have area.

@@ -75,8 +75,15 @@ TEST(Uv1, IslandsAreChartsInMetres) {
     EXPECT_NEAR(charts.charts[1].max.y - charts.charts[1].min.y, 0.25 * scale, 1e-6);
 }
 
-TEST(Uv1, IslandsThatTouchAreOne) {
+// One corner in the layout but 5 m apart: light of the one must not show on the other.
+TEST(Uv1, IslandsThatTouchOnlyInTheLayoutAreTwo) {
     const Mesh mesh = two_quads({0, 0}, {0.5f, 0.5f}, {0.5f, 0.5f}, {0.5f, 0.5f});
+    EXPECT_EQ(uv1_islands(mesh, areas(mesh), 1.0f).charts.size(), 2u);
+}
+
+TEST(Uv1, IslandsThatAlsoTouchInSpaceAreOne) {
+    Mesh mesh = two_quads({0, 0}, {0.5f, 0.5f}, {0.5f, 0}, {0.5f, 0.5f});
+    for (std::size_t v = 4; v < 8; ++v) mesh.positions[v].x -= 4;  // vertices of its own at the common edge
     EXPECT_EQ(uv1_islands(mesh, areas(mesh), 1.0f).charts.size(), 1u);
 }
 

@@ -236,14 +236,15 @@ TEST(Preview, IsTheMeanOfCoveredTexels) {
 // Everything but rays: a scene, its layout, made-up pages.
 struct Baked {
     explicit Baked(const std::filesystem::path& output, Preset preset = Preset::medium,
-                   std::optional<bool> denoise = {})
-        : loaded(scene()) {
+                   std::optional<bool> denoise = {}, bool demotes = false)
+        : loaded(scene(demotes)) {
         options.preset = preset;
         options.denoise = denoise;
         ChartOptions chart_options;
         chart_options.texels_per_metre = 12;
         geometry = flatten(loaded.scene(), loaded.context).value();
         charts = make_charts(loaded.scene(), geometry, chart_options, loaded.context).value();
+        if (demotes) charts.demoted = {false, true};
         atlas = make_atlas(loaded.scene(), geometry, charts, chart_options, loaded.context).value();
         auto created = BakeWriter::create(output, *loaded.result, options, loaded.context);
         EXPECT_TRUE(created.ok());
@@ -252,12 +253,14 @@ struct Baked {
         for (std::uint32_t p = 0; p < atlas.pages.size(); ++p)
             EXPECT_TRUE(writer->page(made_up_page(p, atlas.pages[p].width, atlas.pages[p].height)).ok());
     }
-    static GltfBuilder scene() {
+    // The second node is of class volume by the file, or may become so by its charts.
+    static GltfBuilder scene(bool demotes) {
         GltfBuilder builder;
         const std::size_t triangle = builder.triangle();
         builder.node({{"name", "a"}, {"mesh", triangle}});
-        builder.node(
-            {{"name", "b"}, {"mesh", triangle}, {"translation", {2, 0, 0}}, {"extras", {{"lightmap", false}}}});
+        Json second{{"name", "b"}, {"mesh", triangle}, {"translation", {2, 0, 0}}};
+        if (!demotes) second["extras"]["lightmap"] = false;
+        builder.node(second);
         return builder;
     }
     Status finish() {
@@ -317,6 +320,23 @@ TEST(BakeWriter, ManifestAndReportFollowTheirSchemas) {
     // Every file that the manifest names is there.
     for (const auto& [kind, file] : manifest["pages"][0]["files"].items())
         EXPECT_TRUE(std::filesystem::exists(folder / "out" / file["file"].get<std::string>())) << kind;
+}
+
+// Nodes that lost their texels to bad charts are written as other volume nodes are.
+TEST(BakeWriter, NodesWithBadChartsAreVolume) {
+    const TemporaryFolder folder;
+    Baked baked(folder / "out", Preset::medium, {}, true);
+    ASSERT_EQ(baked.loaded.scene().instances[1].node_class, NodeClass::lightmap);
+    ASSERT_TRUE(baked.writer->write_scene().ok());
+    const auto lighting = read_baked(baked.writer->folder(), baked.loaded.scene(), baked.geometry);
+    ASSERT_TRUE(lighting.ok()) << lighting.error().text();
+    EXPECT_TRUE(lighting->irradiance(0, 0.3f, 0.3f).has_value());
+    EXPECT_FALSE(lighting->irradiance(1, 0.3f, 0.3f).has_value());
+    ASSERT_TRUE(baked.finish().ok());
+    const Json manifest = json_file(folder / "out/manifest.json");
+    EXPECT_EQ(manifest["instances"][0]["class"], "lightmap");
+    EXPECT_EQ(manifest["instances"][1]["class"], "volume");
+    EXPECT_EQ(manifest["instances"][1]["charts"][0], manifest["instances"][1]["charts"][1]);
 }
 
 TEST(BakeWriter, TheManifestSaysWhetherTheBakeWasDenoised) {

@@ -208,6 +208,9 @@ TEST(GltfNodes, ClassesFollowTheRule) {
     for (std::size_t i = 0; i < expected.size(); ++i) {
         EXPECT_EQ(loaded.scene().instances[i].node_class, expected[i]) << loaded.scene().instances[i].name;
         EXPECT_EQ(loaded.scene().display.instances[i].baked_instance == kNone, expected[i] != NodeClass::lightmap);
+        // What the file says of a node, its charts do not change.
+        const std::string& name = loaded.scene().instances[i].name;
+        EXPECT_EQ(loaded.scene().instances[i].class_is_asked, name == "unlit" || name == "below" || name == "kept");
     }
     EXPECT_EQ(loaded.notes("node-class"), 5u);
 }

@@ -165,6 +165,7 @@ private:
         Instance& instance = scene_.instances[i];
         const ClassOfNode result = classify(node, settings, diagonal, scene_diagonal);
         instance.node_class = result.node_class;
+        instance.class_is_asked = result.is_asked;
         instance.density_scale = settings.texel_density.value_or(1.0f);
         if (result.node_class == NodeClass::lightmap)
             scene_.display.instances[i].baked_instance = static_cast<std::uint32_t>(i);

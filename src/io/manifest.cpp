@@ -73,12 +73,12 @@ Json transform_json(const Affine& m) {
     return out;
 }
 
-Json instances_json(const Scene& scene, const Atlas& atlas) {
+Json instances_json(const Scene& scene, const ChartSet& charts, const Atlas& atlas) {
     Json out = Json::array();
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
         const Instance& instance = scene.instances[i];
         out.push_back({{"name", instance.name},
-                       {"class", class_name(instance.node_class)},
+                       {"class", class_name(charts.class_of(scene, i))},
                        {"mesh", instance.mesh},
                        {"transform", transform_json(instance.transform)},
                        {"charts", {atlas.first_placement[i], atlas.first_placement[i + 1]}}});
@@ -140,7 +140,7 @@ Json manifest_json(const ManifestInput& in) {
     out["figures"] = {{"estimated_nrmse", number(in.report.estimated_nrmse)},
                       {"mean_irradiance", in.report.mean_irradiance}};
     out["pages"] = pages_json(in.pages);
-    out["instances"] = instances_json(in.scene, in.atlas);
+    out["instances"] = instances_json(in.scene, in.charts, in.atlas);
     out["charts"] = charts_json(in.atlas);
     return out;
 }

@@ -12,14 +12,14 @@ constexpr double kSmallShare = 0.001, kSmallMetres = 0.1;
 
 ClassOfNode classify(const SceneNode& node, const NodeSettings& settings, double diagonal, double scene_diagonal) {
     if (settings.node_class)
-        return {*settings.node_class, *settings.node_class == NodeClass::lightmap ? "" : "by the sidecar"};
+        return {*settings.node_class, *settings.node_class == NodeClass::lightmap ? "" : "by the sidecar", true};
     if (node.lightmap) {
-        if (*node.lightmap) return {};
-        return {NodeClass::volume, "extras.lightmap is false"};
+        if (*node.lightmap) return {NodeClass::lightmap, "", true};
+        return {NodeClass::volume, "extras.lightmap is false", true};
     }
-    if (node.skinned) return {NodeClass::probe, "skinned"};
-    if (node.animated) return {NodeClass::probe, "animated"};
-    if (diagonal < kSmallShare * scene_diagonal && diagonal < kSmallMetres) return {NodeClass::probe, "small"};
+    if (node.skinned) return {NodeClass::probe, "skinned", false};
+    if (node.animated) return {NodeClass::probe, "animated", false};
+    if (diagonal < kSmallShare * scene_diagonal && diagonal < kSmallMetres) return {NodeClass::probe, "small", false};
     return {};
 }
 

@@ -9,6 +9,7 @@ namespace lumel {
 struct ClassOfNode {
     NodeClass node_class = NodeClass::lightmap;
     const char* reason = "";  // why it is not a lightmap node; "" where it is one
+    bool is_asked = false;    // by the sidecar or extras.lightmap
 };
 
 // The first that applies: the sidecar's class, extras.lightmap, skinned, animated, small, and else lightmap.

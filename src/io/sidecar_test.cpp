@@ -127,6 +127,7 @@ TEST(Sidecar, SetsClassesAndDensitiesForNodesAndTheirChildren) {
     const auto& instances = loaded->scene.instances;
     EXPECT_EQ(instances[0].node_class, NodeClass::ignored);
     EXPECT_EQ(instances[1].node_class, NodeClass::occluder);
+    EXPECT_TRUE(instances[1].class_is_asked) << "bad charts do not change it";
     EXPECT_EQ(instances[1].density_scale, 2.0f);
     EXPECT_EQ(instances[2].node_class, NodeClass::occluder) << "from its parent";
     EXPECT_EQ(instances[2].density_scale, 0.5f) << "its own";

@@ -40,7 +40,10 @@ void add(Hasher& hash, const Mesh& mesh) {
 }
 
 void add(Hasher& hash, const Instance& instance) {
-    hash.pod(instance.mesh).pod(instance.node_class).pod(instance.density_scale);
+    hash.pod(instance.mesh)
+        .pod(instance.node_class)
+        .pod(instance.density_scale)
+        .pod(std::uint8_t{instance.class_is_asked});
     add_floats(hash, instance.transform);
 }
 

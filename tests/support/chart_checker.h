@@ -108,7 +108,7 @@ private:
             const Instance& instance = scene_.instances[triangle.instance];
             const Atlas::TriangleUv uv = atlas_.triangle_uv(charts_, geometry_, scene_, w);
             if (uv.page == kNone) {
-                report_.unmapped += instance.node_class == NodeClass::lightmap &&
+                report_.unmapped += charts_.gets_texels(scene_, triangle.instance) &&
                                     detail::mesh_area(*scene_.meshes[instance.mesh], triangle.mesh_triangle) > 0.0;
                 continue;
             }
