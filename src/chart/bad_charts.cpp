@@ -76,10 +76,11 @@ void demote_bad_charts(const Scene& scene, const ChartOptions& options, ChartSet
     for (const ChartWorth& worth : worths) {
         if (scene.instances[worth.instance].class_is_asked || !is_bad(worth)) continue;
         charts.demoted[worth.instance] = true;
-        diagnostics.add("bad-charts",
-                        "nodes fall into so many so small charts that they became class volume, without texels; for "
-                        "texels all the same give them class lightmap in the sidecar, or a higher --texels-per-metre",
-                        node_and_mesh(scene, worth.instance) + ": " + figures(worth));
+        diagnostics.add(
+            "bad-charts",
+            "nodes whose charts are many and far smaller than a texel became class volume, without texels; for "
+            "texels all the same give them class lightmap in the sidecar, or a higher --texels-per-metre",
+            node_and_mesh(scene, worth.instance) + ": " + figures(worth));
     }
 }
 
