@@ -51,6 +51,12 @@ UsedMeshes used_meshes(const Scene& scene) {
     return used;
 }
 
+// Some of what a diagnostic counts, in words.
+struct Findings {
+    std::vector<std::string> examples;
+    std::uint64_t count = 0;
+};
+
 class ChartMaker {
 public:
     ChartMaker(const Scene& scene, const WorldGeometry& geometry, const ChartOptions& options, Context& context)
@@ -100,8 +106,8 @@ private:
             return no_atlas(node_and_mesh(scene_, used_.repeated) + " shares its mesh with another node");
         const std::vector<UvOverlap> overlaps = scene_overlaps();
         if (!overlaps.empty() && !asked) {
-            not_an_atlas_ = overlap_texts(between_nodes(overlaps));
-            if (not_an_atlas_.empty()) not_an_atlas_ = overlap_texts({overlaps[0]});
+            const std::vector<UvOverlap> between = between_nodes(overlaps);
+            not_an_atlas_ = findings(between.empty() ? overlaps : between);
             return false;
         }
         report_overlaps(
@@ -118,7 +124,7 @@ private:
     }
 
     bool no_atlas(std::string why) {
-        not_an_atlas_ = {std::move(why)};
+        not_an_atlas_ = {{std::move(why)}, 1};
         return false;
     }
 
@@ -147,16 +153,20 @@ private:
         return overlaps;
     }
 
-    // The first pair of each two nodes before all others: few are shown, and they should tell of all nodes.
-    [[nodiscard]] std::vector<std::string> overlap_texts(const std::vector<UvOverlap>& overlaps) const {
+    // Pairs in words, as many as a report shows: the first pair of each two nodes before all others, to tell of all.
+    [[nodiscard]] Findings findings(const std::vector<UvOverlap>& overlaps) const {
         std::set<std::pair<std::uint32_t, std::uint32_t>> met;
-        std::vector<std::string> firsts, others;
+        std::vector<const UvOverlap*> firsts, others;
         for (const UvOverlap& o : overlaps) {
             const bool is_first = met.emplace(o.instance_a, o.instance_b).second;
-            (is_first ? firsts : others).push_back(overlap_text(o));
+            (is_first ? firsts : others).push_back(&o);
         }
         firsts.insert(firsts.end(), others.begin(), others.end());
-        return firsts;
+        Findings out;
+        out.count = firsts.size();
+        for (std::size_t k = 0; k < std::min(firsts.size(), Diagnostics::kMaxExamples); ++k)
+            out.examples.push_back(overlap_text(*firsts[k]));
+        return out;
     }
 
     [[nodiscard]] std::string overlap_text(const UvOverlap& o) const {
@@ -175,7 +185,13 @@ private:
     }
 
     void report_overlaps(const char* message, const std::vector<UvOverlap>& overlaps) {
-        for (const std::string& text : overlap_texts(overlaps)) context_.diagnostics.add("uv-overlap", message, text);
+        report("uv-overlap", message, findings(overlaps));
+    }
+
+    void report(const char* code, const char* message, const Findings& findings) {
+        for (const std::string& example : findings.examples) context_.diagnostics.add(code, message, example);
+        const std::uint64_t more = findings.count - findings.examples.size();
+        if (more > 0) context_.diagnostics.add(code, message, "", more);
     }
 
     // ---- One layout per mesh ----------------------------------------------------------------------------------------
@@ -218,11 +234,10 @@ private:
             "but triangles of one chart share texels, which hold the light of both",
             kept);
         if (any_kept)
-            for (const std::string& why : not_an_atlas_)
-                context_.diagnostics.add("uv1-repacked",
-                                         "TEXCOORD_1 is no atlas of the whole scene; where it is fit the charts of a "
-                                         "mesh were kept, and all were packed anew",
-                                         why);
+            report("uv1-repacked",
+                   "TEXCOORD_1 is no atlas of the whole scene; where it is fit the charts of a mesh were kept, and all "
+                   "were packed anew",
+                   not_an_atlas_);
         return true;
     }
 
@@ -286,7 +301,7 @@ private:
     UsedMeshes used_;
     std::vector<MeshTopology> topology_;
     ChartSet charts_;
-    std::vector<std::string> not_an_atlas_;  // why TEXCOORD_1 was not kept as one atlas of the scene
+    Findings not_an_atlas_;  // why TEXCOORD_1 was not kept as one atlas of the scene
 };
 
 }  // namespace

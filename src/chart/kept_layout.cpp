@@ -173,22 +173,23 @@ void report_bleeding(const Scene& scene, std::vector<ChartContact> contacts, Atl
     std::erase_if(contacts, [](const ChartContact& c) { return c.foreign == 0; });
     std::stable_sort(contacts.begin(), contacts.end(),
                      [](const ChartContact& x, const ChartContact& y) { return x.foreign > y.foreign; });
-    for (const ChartContact& c : contacts) {
-        const auto side = [&](const ChartContact::Side& s) {
-            return node_and_mesh(scene, s.instance) + " chart " + std::to_string(s.chart) + " triangle " +
-                   std::to_string(s.triangle);
-        };
+    const auto side = [&](const ChartContact::Side& s) {
+        return node_and_mesh(scene, s.instance) + " chart " + std::to_string(s.chart) + " triangle " +
+               std::to_string(s.triangle);
+    };
+    const auto text = [&](const ChartContact& c) {
         const Vec2 uv{(static_cast<float>(c.texel_x) + 0.5f) / static_cast<float>(page.width),
                       (static_cast<float>(c.texel_y) + 0.5f) / static_cast<float>(page.height)};
+        return side(c.a) + " and " + side(c.b) + ": " + std::to_string(c.foreign) +
+               (c.foreign == 1 ? " texel of " : " texels of ") + std::to_string(page.width) + "x" +
+               std::to_string(page.height) + " at UV " + uv_text(uv);
+    };
+    for (std::size_t k = 0; k < contacts.size(); ++k)
         diagnostics.add("uv-bleeding",
                         "texels are read by two charts of TEXCOORD_1 under bilinear filtering, so that light of one "
                         "shows on the other; the layout was kept as it is: give it more padding, ask for a higher "
                         "--resolution, or take --uv1 mesh to have its charts packed anew",
-                        side(c.a) + " and " + side(c.b) + ": " + std::to_string(c.foreign) +
-                            (c.foreign == 1 ? " texel" : " texels") + " of " + std::to_string(page.width) + "x" +
-                            std::to_string(page.height) + " at UV " + uv_text(uv),
-                        c.foreign);
-    }
+                        k < Diagnostics::kMaxExamples ? text(contacts[k]) : "", contacts[k].foreign);
 }
 
 }  // namespace lumel
