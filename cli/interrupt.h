@@ -1,6 +1,7 @@
 // Ctrl-C and SIGTERM. The run is asked to stop; most stages look at that some ten times a second. A few do not (a large
-// picture being compressed, a texture being decoded, the tree of rays being built): where the run has not stopped after
-// a grace period, what it has written so far is removed and the process ends itself, within a second in all.
+// picture being compressed, a texture being decoded) or not always (the tree of rays of very many triangles): where the
+// run has not stopped after a grace period, what it has written so far is removed and the process ends itself, within a
+// second in all.
 #pragma once
 
 #include <semaphore.h>

@@ -252,6 +252,7 @@ std::string describe(RTCDevice device, const char* isa) {
 constexpr const char* kMemoryRemedy = "use a machine with more memory or a smaller scene";
 
 Error embree_error(RTCError code, const std::string& doing) {
+    if (code == RTC_ERROR_CANCELLED) return {ErrorCode::cancelled, "cancelled while building the tree of rays", {}, {}};
     const std::string message = "Embree failed " + doing + " (error " + std::to_string(static_cast<int>(code)) + ")";
     if (code == RTC_ERROR_UNSUPPORTED_CPU) return {ErrorCode::unsupported, message, {}, {}};
     return {ErrorCode::out_of_memory, message, {}, kMemoryRemedy};
@@ -274,7 +275,7 @@ class EmbreeTracer final : public Tracer {
 public:
     EmbreeTracer(const WorldGeometry& geometry, SurfaceReader surfaces) : geometry_(geometry), surfaces_(surfaces) {}
 
-    Status build();
+    Status build(Context& context);
 
     void closest(std::span<const Ray> rays, std::span<Hit> hits) const override;
     void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) const override;
@@ -329,9 +330,32 @@ Status EmbreeTracer::add_part(Part& part, RTCBuffer vertices) {
     return success();
 }
 
+// What Embree's builder calls as it goes on. Of a build on one thread that is the thread that asked for it; of another
+// Embree's it need not be, and progress is for the coordinating thread alone.
+class BuildMonitor {
+public:
+    explicit BuildMonitor(Context& context) : context_(context) {}
+
+    // False stops the build. Spatial splits make more work than the share counts: it may pass 1.
+    static bool look(void* monitor, double share) { return static_cast<BuildMonitor*>(monitor)->look(share); }
+
+private:
+    bool look(double share) {
+        if (std::this_thread::get_id() == thread_ && share > share_) {
+            share_ = share;
+            context_.report("acceleration", std::min(share, 1.0));
+        }
+        return !context_.cancelled();
+    }
+
+    Context& context_;
+    std::thread::id thread_ = std::this_thread::get_id();
+    double share_ = 0.0;
+};
+
 // Embree builds on one thread, so that the shape of its tree cannot depend on how threads share the work: what a ray
 // meets among surfaces within rounding of one another may depend on the order in which the tree visits them.
-Status EmbreeTracer::build() {
+Status EmbreeTracer::build(Context& context) {
     const char* isa = pinned_isa();
     const std::string config = "threads=1" + (*isa ? ",isa=" + std::string(isa) : std::string());
     device_ = Device(rtcNewDevice(config.c_str()));
@@ -347,9 +371,14 @@ Status EmbreeTracer::build() {
     if (!vertices.get()) return last_error(device_.get(), "allocating vertices");
     for (Part& part : parts_)
         if (Status status = add_part(part, vertices.get()); !status.ok()) return status;
+    if (context.cancelled()) return embree_error(RTC_ERROR_CANCELLED, {});
+    BuildMonitor monitor(context);
+    rtcSetSceneProgressMonitorFunction(scene_.get(), BuildMonitor::look, &monitor);
     rtcCommitScene(scene_.get());
+    rtcSetSceneProgressMonitorFunction(scene_.get(), nullptr, nullptr);
     if (const RTCError code = rtcGetDeviceError(device_.get()); code != RTC_ERROR_NONE)
         return embree_error(code, "building");
+    context.report("acceleration", 1.0);
     return success();
 }
 
@@ -430,11 +459,12 @@ void EmbreeTracer::occluded(std::span<const Ray> rays, std::span<std::uint8_t> b
 }  // namespace
 
 // Embree reports its own want of memory; our index lists come on top.
-Result<std::unique_ptr<Tracer>> make_embree_tracer(const WorldGeometry& geometry, SurfaceReader surfaces, Context&) {
+Result<std::unique_ptr<Tracer>> make_embree_tracer(const WorldGeometry& geometry, SurfaceReader surfaces,
+                                                   Context& context) {
     const FlushDenormals flush;
     try {
         auto tracer = std::make_unique<EmbreeTracer>(geometry, surfaces);
-        if (Status status = tracer->build(); !status.ok()) return std::move(status).error();
+        if (Status status = tracer->build(context); !status.ok()) return std::move(status).error();
         return std::unique_ptr<Tracer>(std::move(tracer));
     } catch (const std::bad_alloc&) {
         return Error{ErrorCode::out_of_memory, "no memory for the ray tracer's triangles", {}, kMemoryRemedy};

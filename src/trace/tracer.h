@@ -58,7 +58,7 @@ public:
     [[nodiscard]] virtual std::string_view description() const = 0;  // "Embree 3.13.5, isa avx2"
 };
 
-// Borrows geometry and surfaces for its lifetime. Errors: out_of_memory.
+// Borrows geometry and surfaces for its lifetime. Stage "acceleration". Errors: out_of_memory, cancelled.
 Result<std::unique_ptr<Tracer>> make_embree_tracer(const WorldGeometry& geometry, SurfaceReader surfaces,
                                                    Context& context);
 

@@ -383,6 +383,57 @@ TEST(TracerDeathTest, WantOfMemoryIsAnError) {
 }
 #endif
 
+// A rough terrain, large enough that its tree takes some tenths of a second.
+World terrain(std::uint32_t side) {
+    Mesh mesh;
+    Random random(7);
+    for (std::uint32_t y = 0; y <= side; ++y)
+        for (std::uint32_t x = 0; x <= side; ++x) mesh.positions.push_back({float(x), random.unit() * 3.0f, float(y)});
+    for (std::uint32_t y = 0; y < side; ++y)
+        for (std::uint32_t x = 0; x < side; ++x) {
+            const std::uint32_t v = y * (side + 1) + x;
+            mesh.triangles.push_back({v, v + side + 1, v + 1});
+            mesh.triangles.push_back({v + 1, v + side + 1, v + side + 2});
+        }
+    WorldBuilder builder;
+    builder.add_mesh(std::move(mesh));
+    return builder.build();
+}
+
+TEST(Tracer, TheBuildTellsHowFarItIsAndEndsAtOne) {
+    const World world = terrain(200);
+    Context context(1);
+    std::vector<double> fractions;
+    const auto here = std::this_thread::get_id();
+    context.on_progress = [&](const Progress& progress) {
+        EXPECT_EQ(progress.stage, "acceleration");
+        EXPECT_EQ(std::this_thread::get_id(), here);
+        fractions.push_back(progress.fraction);
+    };
+    ASSERT_TRUE(make_embree_tracer(world.geometry, world.surfaces(), context).ok());
+    EXPECT_GT(fractions.size(), 5u);
+    EXPECT_TRUE(std::ranges::is_sorted(fractions));
+    EXPECT_GT(fractions.front(), 0.0);
+    EXPECT_EQ(fractions.back(), 1.0);
+}
+
+TEST(Tracer, TheBuildStopsWhereItIsCancelled) {
+    const World world = terrain(200);
+    for (const double at : {0.0, 0.2, 0.7}) {
+        Context context(1);
+        if (at == 0.0) context.request_cancel();
+        double last = 0.0;
+        context.on_progress = [&](const Progress& progress) {
+            last = progress.fraction;
+            if (last > at) context.request_cancel();
+        };
+        const auto tracer = make_embree_tracer(world.geometry, world.surfaces(), context);
+        ASSERT_FALSE(tracer.ok()) << at;
+        EXPECT_EQ(tracer.error().code, ErrorCode::cancelled);
+        EXPECT_LT(last, 1.0);
+    }
+}
+
 TEST(Tracer, DescriptionNamesTheBackEnd) {
     const World world = stacked_quads({0.0f});
     EXPECT_EQ(make_tracer(world)->description().substr(0, 7), "Embree ");
