@@ -48,6 +48,11 @@ Error system_error(const char* doing, const fs::path& path, int error_number) {
                  path.string(), remedy_for(error_number)};
 }
 
+bool is_disk_full(const Error& error) {
+    return error.message.ends_with(std::generic_category().message(ENOSPC)) ||
+           error.message.ends_with(std::generic_category().message(EDQUOT));
+}
+
 void remove_temporaries(const fs::path& path) {
     const std::string prefix = temporary_prefix(path);
     const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";

@@ -43,4 +43,7 @@ void remove_temporaries(const std::filesystem::path& path);
 // An io error with the system's own words and, for the common causes, what to do about it.
 Error system_error(const char* doing, const std::filesystem::path& path, int error_number);
 
+// Whether such an error says that there was no room left (on the disk, or in the user's share of it).
+bool is_disk_full(const Error& error);
+
 }  // namespace lumel

@@ -23,7 +23,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kPartial = ".partial-";
+// Siblings of the target, each with the process id behind it. An older bake is replaced in two steps: its files move
+// into kLeaving, which becomes kReplaced once it holds them all; then the new ones move in. So what a killed process
+// leaves says how far it got.
+constexpr std::string_view kPartial = ".partial-", kLeaving = ".leaving-", kReplaced = ".replaced-";
 
 bool all_digits(std::string_view text) {
     return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
@@ -46,27 +49,27 @@ fs::path with_suffix(const fs::path& target, std::string_view suffix) {
     return target.parent_path() / name;
 }
 
-// Partial folders of this target whose process is gone.
-void remove_stale(const fs::path& target) {
-    const std::string prefix = target.filename().string() + std::string(kPartial);
-    std::error_code error;
-    std::vector<fs::path> stale;
-    for (fs::directory_iterator at(target.parent_path(), error), end; !error && at != end; at.increment(error)) {
-        const std::string name = at->path().filename().string();
-        if (!is_numbered(name, prefix, "")) continue;
-        long process = 0;
-        std::from_chars(name.data() + prefix.size(), name.data() + name.size(), process);
-        const bool gone = process == ::getpid() || (::kill(static_cast<pid_t>(process), 0) != 0 && errno == ESRCH);
-        if (gone) stale.push_back(at->path());
-    }
-    for (const fs::path& path : stale) fs::remove_all(path, error);
-}
-
 std::vector<fs::path> entries(const fs::path& folder, std::error_code& error) {
     std::vector<fs::path> out;
     for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
         out.push_back(at->path());
     std::sort(out.begin(), out.end());
+    return out;
+}
+
+// Siblings of the target that a process of ours made for itself and that is gone: those of the suffix.
+std::vector<fs::path> left_behind(const fs::path& target, std::string_view suffix) {
+    const std::string prefix = target.filename().string() + std::string(suffix);
+    std::error_code error;
+    std::vector<fs::path> out;
+    for (const fs::path& path : entries(target.parent_path(), error)) {
+        const std::string name = path.filename().string();
+        if (!is_numbered(name, prefix, "")) continue;
+        long process = 0;
+        std::from_chars(name.data() + prefix.size(), name.data() + name.size(), process);
+        const bool gone = process == ::getpid() || (::kill(static_cast<pid_t>(process), 0) != 0 && errno == ESRCH);
+        if (gone) out.push_back(path);
+    }
     return out;
 }
 
@@ -108,6 +111,44 @@ public:
 private:
     std::vector<std::pair<fs::path, fs::path>> done_;
 };
+
+// Moves what is in a folder back into the target and removes the folder. Nothing is overwritten: a file that is in the
+// target already stays in the folder, and so does the folder.
+Status put_back(const fs::path& folder, const fs::path& target) {
+    std::error_code error;
+    for (const fs::path& file : entries(folder, error)) {
+        const fs::path place = target / file.filename();
+        if (fs::exists(fs::symlink_status(place, error))) continue;
+        fs::rename(file, place, error);
+        if (error) return folder_error("putting back a file of an interrupted bake", place, error);
+    }
+    if (error) return folder_error("listing the folder", folder, error);
+    fs::remove(folder, error);  // only where it is empty
+    return success();
+}
+
+void remove_output_files(const fs::path& folder) {
+    std::error_code error;
+    for (const fs::path& file : entries(folder, error))
+        if (is_output_file(file.filename().string())) fs::remove(file, error);
+}
+
+// Puts right what a process left that was killed while it moved its files into place. The target is then the older bake
+// or the newer one, whole.
+Status recover(const fs::path& target) {
+    std::error_code error;
+    if (!fs::is_directory(target, error)) return success();
+    for (const fs::path& leaving : left_behind(target, kLeaving)) LUMEL_TRY_STATUS(put_back(leaving, target));
+    for (const fs::path& replaced : left_behind(target, kReplaced)) {
+        if (is_a_bake(target)) {  // the manifest comes last: all files of the newer bake are there
+            fs::remove_all(replaced, error);
+            continue;
+        }
+        remove_output_files(target);  // of the newer bake: those of the older one had all left
+        LUMEL_TRY_STATUS(put_back(replaced, target));
+    }
+    return success();
+}
 
 }  // namespace
 
@@ -156,10 +197,11 @@ Result<OutputFolder> OutputFolder::create(const fs::path& target) {
         return Error{ErrorCode::io, "is the root folder", target.string(), "choose another folder with -o"};
     if (fs::exists(status) && ::access(real.c_str(), W_OK | X_OK) != 0)
         return system_error("writing to the folder", target, errno);
+    if (fs::exists(status)) LUMEL_TRY_STATUS(recover(real));
     if (fs::exists(status)) LUMEL_TRY_STATUS(check_not_foreign(real, target));
     fs::create_directories(real.parent_path(), error);
     if (error) return folder_error("creating the folder", target, error);
-    remove_stale(real);
+    for (const fs::path& stale : left_behind(real, kPartial)) fs::remove_all(stale, error);
     const fs::path partial = with_suffix(real, std::string(kPartial) + std::to_string(::getpid()));
     fs::create_directory(partial, error);
     if (error) return folder_error("creating the folder", target, error);
@@ -179,11 +221,20 @@ Status OutputFolder::commit() {
     return success();
 }
 
+Error OutputFolder::as_in_target(Error error) const {
+    const std::string partial = partial_.string();
+    if (!partial.empty() && error.where.starts_with(partial)) error.where.replace(0, partial.size(), target_.string());
+    return error;
+}
+
 Status OutputFolder::replace_files() {
+    LUMEL_TRY_STATUS(recover(target_));  // of a process that was killed since
     std::error_code error;
-    const fs::path previous = with_suffix(target_, ".previous-" + std::to_string(::getpid()));
-    fs::create_directory(previous, error);
-    if (error) return folder_error("creating the folder", previous, error);
+    const std::string process = std::to_string(::getpid());
+    const fs::path leaving = with_suffix(target_, std::string(kLeaving) + process);
+    const fs::path replaced = with_suffix(target_, std::string(kReplaced) + process);
+    fs::create_directory(leaving, error);
+    if (error) return folder_error("creating the folder", leaving, error);
     Moves moves;
     const auto move_all = [&]() -> Status {
         std::vector<fs::path> old = entries(target_, error);
@@ -193,15 +244,19 @@ Status OutputFolder::replace_files() {
         std::stable_partition(old.begin(), old.end(), is_manifest);
         std::stable_partition(fresh.begin(), fresh.end(), std::not_fn(is_manifest));
         for (const fs::path& file : old)
-            if (is_output_file(file.filename().string()))
-                LUMEL_TRY_STATUS(moves.move(file, previous / file.filename()));
+            if (is_output_file(file.filename().string())) LUMEL_TRY_STATUS(moves.move(file, leaving / file.filename()));
+        LUMEL_TRY_STATUS(moves.move(leaving, replaced));
         for (const fs::path& file : fresh) LUMEL_TRY_STATUS(moves.move(file, target_ / file.filename()));
         return success();
     };
     const Status status = move_all();
-    if (!status.ok()) moves.undo();
-    fs::remove_all(previous, error);
-    return status;
+    if (!status.ok()) {
+        moves.undo();
+        fs::remove(leaving, error);  // only where it is empty: what could not be moved back is still there
+        return status;
+    }
+    fs::remove_all(replaced, error);
+    return success();
 }
 
 }  // namespace lumel

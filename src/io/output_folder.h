@@ -10,9 +10,10 @@ namespace lumel {
 
 class OutputFolder {
 public:
-    // Makes `<target>.partial-<process id>` beside the target, and parents as needed; removes those that killed
-    // processes left. Errors where the target is no folder, cannot be written to, or holds files of our names that no
-    // bake wrote: before hours of work, not after.
+    // Makes `<target>.partial-<process id>` beside the target, and parents as needed. What killed processes left is
+    // put right first: their partial folders go, and a bake that one of them was about to replace comes back. Errors
+    // where the target is no folder, cannot be written to, or holds files of our names that no bake wrote: before hours
+    // of work, not after.
     static Result<OutputFolder> create(const std::filesystem::path& target);
 
     // Without commit() the partial folder goes, and with it all that is in it.
@@ -22,6 +23,8 @@ public:
 
     // Where to write.
     [[nodiscard]] const std::filesystem::path& path() const { return partial_; }
+    // The error of a file in there as the user knows it: by its place in the target.
+    [[nodiscard]] Error as_in_target(Error error) const;
 
     // Moves everything into place. Files of an older bake (see is_output_file) go, others in the target stay. On
     // failure the target is as it was. A new target appears in one step; in an older one manifest.json goes first and

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <array>
 #include <fstream>
 #include <set>
+#include <vector>
 
 #include "support/temporary_folder.h"
 
@@ -128,6 +130,75 @@ TEST(OutputFolder, WhatAKilledProcessLeftIsRemoved) {
     ASSERT_TRUE(output.ok());
     ASSERT_TRUE(output->commit().ok());
     EXPECT_EQ(names_in(folder.path()), (Names{"out", "out.partial-mine", alive}));
+}
+
+// A bake that is killed after any number of its moves: the next one finds the older bake or the newer, whole, with the
+// user's own files, and nothing beside it. The moves are those of commit(), made here one by one.
+TEST(OutputFolder, ABakeKilledWhileItReplacesIsPutRight) {
+    const Names old_names{"manifest.json", "scene.glb", "lightmap_0.exr", "lightmap_1.exr"};
+    const Names new_names{"manifest.json", "scene.glb", "lightmap_0.exr", "preview_view_0.png"};
+    const std::string process = "-2000000000";  // process ids end far below this
+    std::vector<std::array<std::string, 2>> moves;
+    const auto leave = [&](const std::string& name) {
+        moves.push_back({"out/" + name, "out.leaving" + process + "/" + name});
+    };
+    const auto enter = [&](const std::string& name) {
+        moves.push_back({"out.partial" + process + "/" + name, "out/" + name});
+    };
+    leave("manifest.json");
+    for (const std::string& name : old_names)
+        if (name != "manifest.json") leave(name);
+    moves.push_back({"out.leaving" + process, "out.replaced" + process});
+    for (const std::string& name : new_names)
+        if (name != "manifest.json") enter(name);
+    enter("manifest.json");
+
+    for (std::size_t done = 0; done <= moves.size(); ++done) {
+        const TemporaryFolder folder;
+        for (const char* name : {"out", "out.leaving", "out.partial"})
+            fs::create_directory(folder / (name + (std::string(name) == "out" ? "" : process)));
+        for (const std::string& name : old_names) put(folder / "out" / name, kOldManifest);
+        put(folder / "out/notes.txt", "foreign");
+        const std::string fresh = R"({ "version": 1, "generator": "Lumel", "new": true })";
+        for (const std::string& name : new_names) put(folder / ("out.partial" + process) / name, fresh);
+        for (std::size_t k = 0; k < done; ++k) fs::rename(folder / moves[k][0], folder / moves[k][1]);
+        {
+            const auto next = OutputFolder::create(folder / "out");
+            ASSERT_TRUE(next.ok()) << done << ": " << next.error().text();
+        }
+        const bool newer = done == moves.size();
+        Names expected = newer ? new_names : old_names;
+        for (const std::string& name : expected)
+            EXPECT_EQ(text_of(folder / "out" / name), newer ? fresh : kOldManifest) << done << " " << name;
+        expected.insert("notes.txt");
+        EXPECT_EQ(names_in(folder / "out"), expected) << done;
+        EXPECT_EQ(folder.entries(), 1u) << done;
+    }
+}
+
+// What is put back overwrites nothing: a file that the user made since stays, and so does the old one beside it.
+TEST(OutputFolder, PuttingBackKeepsWhatIsThere) {
+    const TemporaryFolder folder;
+    fs::create_directory(folder / "out");
+    fs::create_directory(folder / "out.leaving-2000000000");
+    put(folder / "out/notes.txt", "mine");
+    put(folder / "out.leaving-2000000000/notes.txt", "older");
+    put(folder / "out.leaving-2000000000/scene.glb", "old");
+    put(folder / "out.leaving-2000000000/manifest.json", kOldManifest);
+    ASSERT_TRUE(OutputFolder::create(folder / "out").ok());
+    EXPECT_EQ(text_of(folder / "out/notes.txt"), "mine");
+    EXPECT_EQ(text_of(folder / "out/scene.glb"), "old");
+    EXPECT_EQ(text_of(folder / "out.leaving-2000000000/notes.txt"), "older");
+}
+
+TEST(OutputFolder, ErrorsNameThePlaceThatTheUserAskedFor) {
+    const TemporaryFolder folder;
+    const auto output = OutputFolder::create(folder / "out");
+    ASSERT_TRUE(output.ok());
+    const Error error{ErrorCode::io, "writing failed", (output->path() / "lightmap_0.exr").string(), {}};
+    EXPECT_EQ(output->as_in_target(error).where, (fs::canonical(folder.path()) / "out/lightmap_0.exr").string());
+    const Error other{ErrorCode::io, "reading failed", "sky.hdr", {}};
+    EXPECT_EQ(output->as_in_target(other).where, "sky.hdr");
 }
 
 TEST(OutputFolder, FollowsALinkToItsPlace) {
