@@ -27,6 +27,8 @@ Run add_compare(CLI::App& app);
 // Checks of a number; unlike CLI11's own they refuse "nan".
 CLI::Validator between(double low, double high);
 CLI::Validator not_negative();
+// Of a text: an option that is given says something.
+CLI::Validator not_empty();
 
 // "1,2,3" -> Vec3. Error: usage.
 Result<Vec3> parse_vec3(const std::string& text, const std::string& option);

@@ -1,15 +1,17 @@
 // lumel bake: the main job.
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
 
+#include "bake/memory.h"
+#include "bake/stage_timer.h"
 #include "base/try.h"
 #include "command.h"
 #include "image/tonemap.h"
 #include "interrupt.h"
 #include "io/bake_writer.h"
 #include "io/baked.h"
-#include "io/image_io.h"
 #include "load.h"
 #include "path/path_integrator.h"
 #include "render/picture.h"
@@ -75,28 +77,36 @@ std::vector<std::uint8_t> side_by_side(const Image& truth, const Image& baked) {
     return out;
 }
 
-// preview_view_<k>.png from the files just written: what the pictures show is what a user gets.
-Status write_views(const BakeWriter& writer, const Scene& scene, const BakeOptions& options,
-                   const PictureOptions& picture, std::uint32_t count, Context& context) {
+// preview_view_<k>.png from the files just written: what the pictures show is what a user gets. `page_memory`: for the
+// pages that are looked at together.
+Status write_views(BakeWriter& writer, const Scene& scene, const BakeOptions& options, const PictureOptions& picture,
+                   std::uint32_t count, std::uint64_t page_memory, Context& context) {
     if (count == 0) return success();
     LUMEL_TRY(const WorldGeometry geometry, flatten(scene, context));
     const SurfaceReader surfaces(scene, geometry);
     const LightSet lights(scene, geometry, surfaces);
     LUMEL_TRY(const std::unique_ptr<Tracer> tracer, make_embree_tracer(geometry, surfaces, context));
     const Transport transport{scene, geometry, surfaces, lights, *tracer};
-    LUMEL_TRY(const BakedLighting baked, read_baked(writer.folder(), scene, geometry));
-    const BakedIrradiance lookup = [&](std::uint32_t triangle, float b1, float b2) {
-        return baked.irradiance(triangle, b1, b2);
-    };
+    LUMEL_TRY(BakedLighting baked, read_baked(writer.folder(), scene, geometry, page_memory));
+    const BakedLight light = light_of(baked);
     const PathOptions path = transport_options(options);
     LUMEL_TRY(const std::vector<Camera> views, choose_views(transport, count, context));
     for (std::size_t k = 0; k < views.size(); ++k) {
         LUMEL_TRY(const Image truth, render_picture(transport, path, views[k], picture, nullptr, context));
-        LUMEL_TRY(const Image lit, render_picture(transport, path, views[k], picture, &lookup, context));
-        LUMEL_TRY_STATUS(write_png(writer.folder() / ("preview_view_" + std::to_string(k) + ".png"),
-                                   2 * picture.width + kViewGutter, picture.height, 3, side_by_side(truth, lit)));
+        LUMEL_TRY(const Image lit, render_picture(transport, path, views[k], picture, &light, context));
+        LUMEL_TRY_STATUS(
+            writer.write_view(k, 2 * picture.width + kViewGutter, picture.height, side_by_side(truth, lit)));
     }
     return success();
+}
+
+// What a page took while it was baked is free by now. 0: no ceiling.
+std::uint64_t memory_for_views(const BakeOptions& options, const BakeReport& report) {
+    if (options.max_memory_bytes == 0) return 0;
+    std::uint64_t most = 0;
+    for (const PageReport& page : report.pages)
+        most = std::max(most, page_memory({page.width, page.height}, report.threads));
+    return most;
 }
 
 void print_summary(const BakeReport& report, const std::string& folder) {
@@ -132,10 +142,17 @@ Status run(const Options& options) {
         return writer.layout(geometry, charts, atlas);
     };
     sink.page = [&](const Lightmap& page) { return writer.page(page); };
-    LUMEL_TRY(const BakeReport report, bake(loaded.scene, bake_options, sink, context));
-    LUMEL_TRY_STATUS(writer.write_scene());
-    LUMEL_TRY_STATUS(write_views(writer, loaded.scene, bake_options, {kViewWidth, kViewHeight, options.view_samples},
-                                 options.views, context));
+    LUMEL_TRY(BakeReport report, bake(loaded.scene, bake_options, sink, context));
+    {
+        const StageTimer timer(report, "scene");
+        LUMEL_TRY_STATUS(writer.write_scene());
+    }
+    {
+        const StageTimer timer(report, "views");
+        const PictureOptions picture{kViewWidth, kViewHeight, options.view_samples};
+        LUMEL_TRY_STATUS(write_views(writer, loaded.scene, bake_options, picture, options.views,
+                                     memory_for_views(bake_options, report), context));
+    }
     LUMEL_TRY_STATUS(writer.finish(report, context.diagnostics));
     if (!run_context.interrupt().begin_commit()) return Error{ErrorCode::cancelled, "the bake was cancelled", {}, {}};
     LUMEL_TRY_STATUS(writer.commit());
@@ -163,7 +180,7 @@ Run add_bake(CLI::App& app) {
     app.add_option("--texels-per-metre", values.texels_per_metre, "Density (0: from the preset's texel budget)")
         ->check(between(0.0, 1e6))
         ->group(texels);
-    app.add_option("--resolution", options->resolution, "WxH of the one page")->group(texels);
+    app.add_option("--resolution", options->resolution, "WxH of the one page")->check(not_empty())->group(texels);
     app.add_option("--max-page", values.max_page, "Largest page edge in texels")
         ->check(CLI::Range(64u, 16384u))
         ->group(texels);
@@ -195,7 +212,8 @@ Run add_bake(CLI::App& app) {
         ->check(between(0.5, 0.9999))
         ->group(transport);
     app.add_flag("--two-sided", values.two_sided, "Light both sides of double-sided surfaces")->group(transport);
-    app.add_option("--max-memory", options->max_memory, "Ceiling such as 4G; pages shrink to fit it");
+    app.add_option("--max-memory", options->max_memory, "Ceiling such as 4G; pages shrink to fit it")
+        ->check(not_empty());
     options->light.declare(app);
     declare_progress(app, options->progress);
     return [options] {

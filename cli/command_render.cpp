@@ -117,11 +117,9 @@ Status run(const Options& options) {
     if (options.baked.empty()) {
         LUMEL_TRY(image, render_picture(transport, path, camera, picture, nullptr, context));
     } else {
-        LUMEL_TRY(const BakedLighting baked, read_baked(options.baked, scene, geometry));
-        const BakedIrradiance lookup = [&](std::uint32_t triangle, float b1, float b2) {
-            return baked.irradiance(triangle, b1, b2);
-        };
-        LUMEL_TRY(image, render_picture(transport, path, camera, picture, &lookup, context));
+        LUMEL_TRY(BakedLighting baked, read_baked(options.baked, scene, geometry));
+        const BakedLight baked_light = light_of(baked);
+        LUMEL_TRY(image, render_picture(transport, path, camera, picture, &baked_light, context));
     }
     LUMEL_TRY_STATUS(write_picture(options.output, image, options.exposure));
     run_context.finish();
@@ -136,9 +134,11 @@ Run add_render(CLI::App& app) {
     app.add_option("SCENE", options->scene, "glTF scene: .glb or .gltf")->required();
     app.add_option("-o,--output", options->output, "Picture: .png (tone-mapped), .exr, .hdr or .pfm (radiance)")
         ->required();
-    app.add_option("--camera", options->camera, "Name of a camera, 'view K', or eye;target;vfov_degrees");
-    app.add_option("--baked", options->baked, "Output folder of a bake of this scene: light the view by it");
-    app.add_option("--resolution", options->resolution, "Width x height in pixels");
+    app.add_option("--camera", options->camera, "Name of a camera, 'view K', or eye;target;vfov_degrees")
+        ->check(not_empty());
+    app.add_option("--baked", options->baked, "Output folder of a bake of this scene: light the view by it")
+        ->check(not_empty());
+    app.add_option("--resolution", options->resolution, "Width x height in pixels")->check(not_empty());
     app.add_option("--exposure", options->exposure, "Factor for .png; 0: automatic")->check(not_negative());
     options->light.declare(app);
     declare_progress(app, options->progress);

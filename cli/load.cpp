@@ -15,4 +15,9 @@ Result<LoadedScene> load_lit_scene(const std::string& path, const BakeOptions& o
     return loaded;
 }
 
+BakedLight light_of(BakedLighting& baked) {
+    return {[&baked](std::uint32_t triangle, float b1, float b2) { return baked.irradiance(triangle, b1, b2); },
+            baked.parts(), [&baked](std::uint32_t part) { return baked.load(part); }};
+}
+
 }  // namespace lumel::cli

@@ -37,6 +37,11 @@ CLI::Validator between(double low, double high) {
 
 CLI::Validator not_negative() { return between(0.0, std::numeric_limits<double>::max()); }
 
+CLI::Validator not_empty() {
+    return {[](std::string& text) { return text.empty() ? std::string("needs a value: '' is none") : std::string{}; },
+            ""};
+}
+
 Result<Vec3> parse_vec3(const std::string& text, const std::string& option) {
     Vec3 out;
     std::istringstream stream(text);
@@ -81,7 +86,9 @@ Result<std::uint64_t> parse_bytes(const std::string& text, const std::string& op
 
 void LightOptions::declare(CLI::App& app) {
     const std::string group = "Light";
-    app.add_option("--sky", sky_, "Sky: radiance R,G,B, or an equirectangular .hdr or .exr file")->group(group);
+    app.add_option("--sky", sky_, "Sky: radiance R,G,B, or an equirectangular .hdr or .exr file")
+        ->check(not_empty())
+        ->group(group);
     app.add_option("--sky-intensity", values_.sky.intensity, "Times the sky: nits per unit")
         ->check(not_negative())
         ->group(group);
@@ -94,8 +101,9 @@ void LightOptions::declare(CLI::App& app) {
         ->group(group);
     app.add_flag("--sky-extract-sun", values_.sky.extract_sun, "Find the sun's disc in the map and make it a light")
         ->group(group);
-    CLI::Option* const sun =
-        app.add_option("--sun-direction", sun_direction_, "X,Y,Z: the way the sun's light travels")->group(group);
+    CLI::Option* const sun = app.add_option("--sun-direction", sun_direction_, "X,Y,Z: the way the sun's light travels")
+                                 ->check(not_empty())
+                                 ->group(group);
     app.add_option("--sun-illuminance", values_.sun.illuminance, "Lux on a plane facing the sun (0: 100000)")
         ->check(not_negative())
         ->needs(sun)

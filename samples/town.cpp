@@ -1,6 +1,8 @@
 // Many instances of a few houses on a grid: what a large level asks of charts, packing and memory.
 #include <cmath>
 
+#include "base/try.h"
+#include "io/image_io.h"
 #include "samples.h"
 
 namespace lumel::samples {
@@ -53,6 +55,14 @@ Status write_town(const std::filesystem::path& folder, std::uint32_t buildings) 
                       {"mesh", meshes[(i * 7 + i / side * 3) % kKinds]},
                       {"translation", {x, 0.0f, z}}});
     }
+    const int sun =
+        glb.add_light({{"type", "directional"}, {"name", "sun"}, {"intensity", 5.0}, {"color", {1.0, 0.93, 0.82}}});
+    Json sun_node = make_node_looking("sun", {0.0f, 50.0f, 0.0f}, {0.4f, -1.0f, 0.3f});
+    sun_node["extensions"]["KHR_lights_punctual"]["light"] = sun;
+    glb.add_node(sun_node);
+    const Json sidecar{{"sky", {{"color", {0.6, 0.8, 1.2}}}}, {"lights", {{"sun", {{"angle_degrees", 0.53}}}}}};
+    const std::string text = sidecar.dump(2) + "\n";
+    LUMEL_TRY_STATUS(write_file(folder / "town.lumel.json", std::as_bytes(std::span(text))));
     return glb.write(folder / "town.glb");
 }
 

@@ -43,9 +43,11 @@ struct BakeReport {
     double rays_per_second = 0.0;           // rays over trace_wall_seconds
     double estimated_nrmse = 0.0;           // from the stored variance: sqrt(mean variance) / mean irradiance
     double mean_irradiance[3] = {0, 0, 0};  // I = E/pi over baked texels
-    double texels_per_metre = 0.0;
-    std::uint64_t peak_memory_bytes = 0, predicted_memory_bytes = 0;
-    std::string tracer;  // back end and instruction set
+    double texels_per_metre = 0.0;        // reached, mean over the area; below what was asked where charts were clamped
+    double least_texels_per_metre = 0.0;  // of any chart that was not asked for less
+    std::uint64_t peak_memory_bytes = 0;  // of the process so far, when this was last looked at
+    std::uint64_t predicted_memory_bytes = 0;  // before the first page: for all that `lumel bake` does
+    std::string tracer;                        // back end and instruction set
     unsigned threads = 0;
 };
 

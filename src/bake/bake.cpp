@@ -1,14 +1,13 @@
 // The order of the stages. Nothing else knows it.
 #include "lumel/bake.h"
 
-#include <sys/resource.h>
-
-#include <chrono>
 #include <cmath>
 #include <string>
 
 #include "bake/memory.h"
+#include "bake/stage_timer.h"
 #include "base/denormals.h"
+#include "base/memory_use.h"
 #include "base/try.h"
 #include "chart/chart_picture.h"
 #include "chart/chart_set.h"
@@ -23,44 +22,6 @@
 
 namespace lumel {
 namespace {
-
-double cpu_seconds() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    const auto seconds = [](const timeval& t) {
-        return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
-    };
-    return seconds(usage.ru_utime) + seconds(usage.ru_stime);
-}
-
-// Adds the life time of the object to a stage of the report; stages of the same name (one per page) add up.
-class StageTimer {
-public:
-    StageTimer(BakeReport& report, std::string stage)
-        : report_(report), stage_(std::move(stage)), wall_(std::chrono::steady_clock::now()), cpu_(cpu_seconds()) {}
-    ~StageTimer() {
-        const double wall = seconds();
-        const double cpu = cpu_seconds() - cpu_;
-        for (StageTime& time : report_.stages)
-            if (time.stage == stage_) {
-                time.wall_seconds += wall;
-                time.cpu_seconds += cpu;
-                return;
-            }
-        report_.stages.push_back({stage_, wall, cpu});
-    }
-    StageTimer(const StageTimer&) = delete;
-    StageTimer& operator=(const StageTimer&) = delete;
-    [[nodiscard]] double seconds() const {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_).count();
-    }
-
-private:
-    BakeReport& report_;
-    std::string stage_;
-    std::chrono::steady_clock::time_point wall_;
-    double cpu_;
-};
 
 Uv1Policy uv1_policy(Uv1Choice choice) {
     switch (choice) {
@@ -94,30 +55,38 @@ PathOptions path_options(const BakeOptions& options, const WorldGeometry& geomet
     return out;
 }
 
+constexpr std::uint32_t kSmallestPage = 256;
+
 std::string megabytes(std::uint64_t bytes) { return std::to_string((bytes + (1u << 20) - 1) >> 20) + " MB"; }
 
-// Packs the charts so that the largest page fits the memory that the scene leaves. Pages shrink by halves.
+// The largest page edge, of halves of `edge`, whose full page would fit; at least the smallest.
+std::uint32_t edge_that_fits(std::uint32_t edge, std::uint64_t memory, unsigned threads) {
+    while (edge > kSmallestPage && page_memory({edge, edge}, threads) > memory) edge /= 2;
+    return std::max(edge, kSmallestPage);
+}
+
+// Packs the charts so that everything fits the memory allowed. Pages shrink by halves.
 Result<Atlas> make_atlas_within_memory(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts,
                                        ChartOptions options, std::uint64_t max_memory, BakeReport& report,
                                        Context& context) {
-    constexpr std::uint32_t kSmallestPage = 256;
-    const std::uint64_t fixed = scene_memory(scene, geometry);
     const bool one_page = charts.scene_wide || options.resolution_width != 0;
-    if (max_memory != 0 && !one_page)
-        while (options.max_page > kSmallestPage &&
-               fixed + page_memory({options.max_page, options.max_page}) > max_memory)
-            options.max_page /= 2;
-    LUMEL_TRY(Atlas atlas, make_atlas(scene, geometry, charts, options, context));
-    report.predicted_memory_bytes = fixed + largest_page_memory(atlas);
-    if (max_memory != 0 && report.predicted_memory_bytes > max_memory) {
-        const std::string remedy = one_page ? "raise --max-memory, or lower --resolution: a single page cannot be split"
-                                            : "raise --max-memory or lower --texels-per-metre";
-        return Error{ErrorCode::out_of_memory,
-                     "this bake needs about " + megabytes(report.predicted_memory_bytes) + " but --max-memory allows " +
-                         megabytes(max_memory),
-                     scene.source, remedy};
+    const Diagnostics before = context.diagnostics;
+    for (;;) {
+        context.diagnostics = before;  // what a layout that is given up had to say is of no interest
+        LUMEL_TRY(Atlas atlas, make_atlas(scene, geometry, charts, options, context));
+        report.predicted_memory_bytes = bake_memory(scene, geometry, atlas, context.threads());
+        if (max_memory == 0 || report.predicted_memory_bytes <= max_memory) return atlas;
+        if (one_page || options.max_page <= kSmallestPage) break;
+        const std::uint64_t scene_bytes = scene_memory(scene, geometry, atlas);
+        const std::uint64_t left = max_memory > scene_bytes ? max_memory - scene_bytes : 0;
+        options.max_page = edge_that_fits(options.max_page / 2, left, context.threads());
     }
-    return atlas;
+    const std::string remedy = one_page ? "raise --max-memory, or lower --resolution: a single page cannot be split"
+                                        : "raise --max-memory, or lower --texels-per-metre or --threads";
+    return Error{ErrorCode::out_of_memory,
+                 "this bake needs " + megabytes(report.predicted_memory_bytes) + " but --max-memory allows " +
+                     std::to_string(max_memory >> 20) + " MB",
+                 scene.source, remedy};
 }
 
 // Running totals over all pages for the report's error estimate.
@@ -256,6 +225,7 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
     report.instances = scene.instances.size();
     report.charts = atlas.placements.size();
     report.texels_per_metre = atlas.texels_per_metre;
+    report.least_texels_per_metre = atlas.least_texels_per_metre;
     report.peak_memory_bytes = peak_memory();
     return report;
 }

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cstdlib>
 
 #include "base/hash.h"
 #include "chart/chart_set.h"
@@ -181,16 +182,68 @@ TEST(Bake, NoLightIsAnErrorThatNamesTheRemedy) {
     EXPECT_NE(result.error().text().find("--sky"), std::string::npos);
 }
 
+BakeSink no_sink() {
+    return {[](const auto&, const auto&, const auto&) { return success(); }, [](const auto&) { return success(); }};
+}
+
+// The megabytes that an error says are needed; 0 where it says none.
+std::uint64_t megabytes_needed(const Error& error) {
+    const std::size_t at = error.message.find("needs ");
+    return at == std::string::npos ? 0 : std::strtoull(error.message.c_str() + at + 6, nullptr, 10);
+}
+
 TEST(Bake, TooLittleMemoryIsAnErrorThatSaysHowMuchIsNeeded) {
     BakeOptions options = small_options();
     options.max_memory_bytes = 1 << 20;
     Context context(1);
-    BakeSink sink{[](const auto&, const auto&, const auto&) { return success(); },
-                  [](const auto&) { return success(); }};
-    const auto result = bake(test::room(), options, sink, context);
+    const auto result = bake(test::room(), options, no_sink(), context);
     ASSERT_FALSE(result.ok());
     EXPECT_EQ(result.error().code, ErrorCode::out_of_memory);
-    EXPECT_NE(result.error().message.find("needs about"), std::string::npos);
+    const std::uint64_t needed = megabytes_needed(result.error());
+    ASSERT_GT(needed, 1u) << result.error().message;
+    // Just that is enough; less is not.
+    options.max_memory_bytes = needed << 20;
+    const auto enough = bake(test::room(), options, no_sink(), context);
+    ASSERT_TRUE(enough.ok()) << enough.error().text();
+    EXPECT_LE(enough->predicted_memory_bytes, needed << 20);
+    options.max_memory_bytes = (needed - 1) << 20;
+    const auto less = bake(test::room(), options, no_sink(), context);
+    ASSERT_FALSE(less.ok());
+    EXPECT_EQ(megabytes_needed(less.error()), needed);
+}
+
+// Pages shrink until they fit, and the warnings are those of the layout that is used.
+TEST(Bake, PagesShrinkToTheMemoryAllowed) {
+    BakeOptions options = small_options();
+    options.texels_per_metre = 200;
+    options.samples = 1;
+    options.bounces = 0;
+    std::vector<AtlasPage> pages;
+    std::uint64_t clamped = 0;
+    const auto predicted = [&](std::uint64_t max_memory) {
+        options.max_memory_bytes = max_memory;
+        Context context(2);
+        BakeSink sink = no_sink();
+        sink.layout = [&](const auto&, const auto&, const Atlas& atlas) -> Status {
+            pages = atlas.pages;
+            return Error{ErrorCode::cancelled, "seen enough", {}, {}};
+        };
+        (void)bake(test::room(), options, sink, context);
+        clamped = context.diagnostics.count("chart-clamped");
+        std::uint64_t largest = 0;
+        for (const AtlasPage& page : pages) largest = std::max<std::uint64_t>(largest, page.width * page.height);
+        return largest;
+    };
+    const std::uint64_t free = predicted(0);
+    ASSERT_EQ(pages.size(), 1u);
+    ASSERT_EQ(clamped, 0u);
+    ASSERT_GT(free, 500000u);
+    const std::uint64_t small = predicted(std::uint64_t{200} << 20);
+    EXPECT_GT(pages.size(), 1u);
+    EXPECT_LT(small, 300000u);
+    // Two walls of 3 m and a floor are wider than 512 texels, however often the pages were halved to get there.
+    EXPECT_LE(clamped, 6u);
+    EXPECT_GT(clamped, 0u);
 }
 
 TEST(Bake, CancelledBakesStopAndSaySo) {

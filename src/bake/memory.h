@@ -1,4 +1,4 @@
-// What a bake takes: predicted before it starts, measured after.
+// What a bake takes of memory, predicted before it starts.
 #pragma once
 
 #include <cstdint>
@@ -8,14 +8,15 @@
 
 namespace lumel {
 
-// Geometry, acceleration structure, textures and charts: what lives through the whole bake.
-std::uint64_t scene_memory(const Scene& scene, const WorldGeometry& geometry);
+// Geometry, acceleration structure, textures, charts: what lives as long as pages are baked, and again while views of
+// the result are rendered.
+std::uint64_t scene_memory(const Scene& scene, const WorldGeometry& geometry, const Atlas& atlas);
 
-// The largest page: texel buffer, sums, lightmap and the writers' rows.
-std::uint64_t page_memory(const AtlasPage& page);
-std::uint64_t largest_page_memory(const Atlas& atlas);
+// One page while it is baked and written: texel buffer, sums, lightmap, rows of the files on so many threads.
+std::uint64_t page_memory(const AtlasPage& page, unsigned threads);
 
-// High-water mark of the process's resident memory.
-std::uint64_t peak_memory();
+// All that `lumel bake` takes at its peak, which is either the largest page or the scene.glb and the manifest at the
+// end.
+std::uint64_t bake_memory(const Scene& scene, const WorldGeometry& geometry, const Atlas& atlas, unsigned threads);
 
 }  // namespace lumel

@@ -1,5 +1,6 @@
 // make_atlas: how large each chart is drawn and where it lies.
 #include <algorithm>
+#include <cstdio>
 #include <string>
 
 #include "base/check.h"
@@ -51,7 +52,8 @@ public:
         if (instances_.empty()) return atlas;
         const bool fixed = options_.resolution_width != 0;
         LUMEL_TRY_STATUS(fixed ? fit_resolution() : fill_pages());
-        atlas.texels_per_metre = density_;
+        atlas.texels_per_metre = sized_.reached;
+        atlas.least_texels_per_metre = sized_.least;
         for (const PackPage& page : packing_.pages) atlas.pages.push_back({page.width, page.height});
         for (std::size_t k = 0; k < instances_.size(); ++k) atlas.placements.push_back(placement(k));
         return atlas;
@@ -127,9 +129,12 @@ private:
     }
 
     void report_clamped() {
-        if (sized_.clamped > 0)
-            context_.diagnostics.add("chart-clamped", "charts larger than a page got fewer texels per metre", "",
-                                     sized_.clamped);
+        char text[160];
+        std::snprintf(text, sizeof text,
+                      "charts larger than a page got fewer than %.4g texels per metre, one of them no more than %.4g",
+                      density_, sized_.least);
+        for (const std::uint32_t k : sized_.clamped)
+            context_.diagnostics.add("chart-clamped", text, scene_.instances[instances_[k].instance].name);
     }
 
     [[nodiscard]] ChartPlacement placement(std::size_t k) const {

@@ -227,6 +227,35 @@ TEST(Atlas, WhatDoesNotFitIsAnError) {
     EXPECT_NE(dense.error().text().find("--texels-per-metre"), std::string::npos);
 }
 
+// A wall of 100 m and one of 10 m, both 1 m high, at 8 texels a metre on pages of 128: the long one gets 127 steps of
+// the 800 that were asked for, along its length alone.
+TEST(Atlas, DensityIsWhatWasReached) {
+    LevelBuilder builder;
+    for (const float length : {100.0f, 10.0f}) {
+        const auto point = [length](float u, float v) { return Vec3{length * u, v, 0}; };
+        builder.instance(builder.mesh(test::surface(1, 1, point)));
+    }
+    const Level level = builder.build();
+    ChartOptions options;
+    options.texels_per_metre = 8.0;
+    for (const std::uint32_t max_page : {128u, 1024u}) {
+        options.max_page = max_page;
+        Context context(1);
+        const Layout l = layout(level, options, context);
+        if (max_page == 1024) {
+            EXPECT_EQ(l.atlas.texels_per_metre, 8.0);
+            EXPECT_EQ(l.atlas.least_texels_per_metre, 8.0);
+            EXPECT_TRUE(context.diagnostics.all().empty());
+            continue;
+        }
+        EXPECT_NEAR(l.atlas.least_texels_per_metre, 8.0 * std::sqrt(127.0 / 800.0), 1e-6);
+        EXPECT_NEAR(l.atlas.texels_per_metre, 8.0 * std::sqrt((100.0 * 127.0 / 800.0 + 10.0) / 110.0), 1e-6);
+        EXPECT_EQ(context.diagnostics.count("chart-clamped"), 1u);
+        EXPECT_EQ(context.diagnostics.all()[0].examples, std::vector<std::string>{"node 0"});
+        EXPECT_NE(context.diagnostics.all()[0].message.find("fewer than 8 texels"), std::string::npos);
+    }
+}
+
 TEST(Atlas, CancelledIsCancelled) {
     const Level level = mixed_level();
     Context context(1);

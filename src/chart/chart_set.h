@@ -57,7 +57,9 @@ struct Atlas {
     std::vector<AtlasPage> pages;
     std::vector<std::uint32_t> first_placement;  // per Scene::instances, plus one past the end
     std::vector<ChartPlacement> placements;      // of instance i: [first_placement[i] + chart]
-    double texels_per_metre = 0.0;               // as asked or solved; 0 for a kept layout
+    // Reached: as asked or solved, lower where charts larger than a page had to shrink (mean over the area). The least
+    // is that of the chart that shrank most. Both are 0 for a kept layout, which has many.
+    double texels_per_metre = 0.0, least_texels_per_metre = 0.0;
 
     // Lightmap UV of a triangle's corners in texels of the page, and that page; page kNone: no texels.
     struct TriangleUv {
@@ -96,7 +98,7 @@ Result<ChartSet> make_charts(const Scene& scene, const WorldGeometry& geometry, 
                              Context& context);
 
 // Places the charts of every lightmap instance. Errors: usage where they cannot fit the asked resolution.
-// Diagnostics: "chart-clamped" (charts larger than a page).
+// Diagnostics: "chart-clamped" (nodes with charts larger than a page, and the density that is left to them).
 Result<Atlas> make_atlas(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts,
                          const ChartOptions& options, Context& context);
 

@@ -90,18 +90,29 @@ struct Drawing {
     }
 };
 
-std::uint32_t texel_steps(double length, double density, std::uint32_t limit, bool& clamped) {
+// `share`: of the steps asked for, below 1 where they were clamped.
+std::uint32_t texel_steps(double length, double density, std::uint32_t limit, double& share) {
     const double steps = std::max(1.0, std::floor(length * density + 0.5));
+    share = 1.0;
     if (steps <= limit - 1) return static_cast<std::uint32_t>(steps);
-    clamped = true;
+    share = static_cast<double>(limit - 1) / (length * density);
     return limit - 1;
 }
 
-Drawing drawing_of(const ChartSet& charts, const ChartInstance& c, double density, SizeLimit limit, bool& clamped) {
+struct Sized {
+    Drawing drawing;
+    double area;   // of the box, world units
+    double share;  // of the texels asked for, before their number was rounded
+};
+
+Sized size_chart(const ChartSet& charts, const ChartInstance& c, double density, SizeLimit limit) {
     const Chart& chart = charts.meshes[c.mesh].charts[c.chart];
-    const double size_x = double{chart.max.x} - chart.min.x, size_y = double{chart.max.y} - chart.min.y;
-    return {c.mesh, c.chart, texel_steps(size_x * c.rate_x, density, limit.width, clamped) + 1,
-            texel_steps(size_y * c.rate_y, density, limit.height, clamped) + 1};
+    const double size_x = (double{chart.max.x} - chart.min.x) * c.rate_x;
+    const double size_y = (double{chart.max.y} - chart.min.y) * c.rate_y;
+    double share_x = 1.0, share_y = 1.0;
+    const std::uint32_t width = texel_steps(size_x, density, limit.width, share_x) + 1;
+    const std::uint32_t height = texel_steps(size_y, density, limit.height, share_y) + 1;
+    return {{c.mesh, c.chart, width, height}, size_x * size_y, share_x * share_y};
 }
 
 ChartMask draw(const ChartSet& charts, const Drawing& d) {
@@ -136,11 +147,17 @@ std::optional<SizedCharts> size_charts(const ChartSet& charts, const std::vector
     SizedCharts sized;
     std::vector<Drawing> wanted;
     wanted.reserve(instances.size());
-    for (const ChartInstance& c : instances) {
-        bool clamped = false;
-        wanted.push_back(drawing_of(charts, c, texels_per_metre, limit, clamped));
-        sized.clamped += clamped ? 1 : 0;
+    double area = 0.0, area_reached = 0.0, least = 1.0;
+    for (std::uint32_t k = 0; k < instances.size(); ++k) {
+        const Sized chart = size_chart(charts, instances[k], texels_per_metre, limit);
+        wanted.push_back(chart.drawing);
+        area += chart.area;
+        area_reached += chart.area * chart.share;
+        least = std::min(least, chart.share);
+        if (chart.share < 1.0) sized.clamped.push_back(k);
     }
+    sized.reached = texels_per_metre * (area > 0.0 ? std::sqrt(area_reached / area) : 1.0);
+    sized.least = texels_per_metre * std::sqrt(least);
     std::vector<Drawing> drawings = wanted;
     std::sort(drawings.begin(), drawings.end());
     drawings.erase(std::unique(drawings.begin(), drawings.end()), drawings.end());

@@ -25,7 +25,8 @@ struct SizedCharts {
     std::vector<ChartMask> masks;
     std::vector<std::uint32_t> mask_of;  // beside the chart instances
     std::uint64_t used = 0;              // texels of all instances
-    std::uint64_t clamped = 0;           // charts that the largest size cut down
+    std::vector<std::uint32_t> clamped;  // chart instances that the largest size cut down
+    double reached = 0.0, least = 0.0;   // texels per metre, with the clamped ones: mean over the area, and lowest
 };
 
 struct SizeLimit {

@@ -77,7 +77,7 @@ TEST(Density, NeverLessThanTwoByTwoNorMoreThanTheLimit) {
     const auto clamped = size_charts(f.charts, instances, 1000.0, {64, 128}, context);
     EXPECT_EQ(clamped->masks[0].width, 64u);
     EXPECT_EQ(clamped->masks[0].height, 128u);
-    EXPECT_EQ(clamped->clamped, 1u);
+    EXPECT_EQ(clamped->clamped.size(), 1u);
 }
 
 TEST(Density, MeetsTheBudget) {

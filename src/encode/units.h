@@ -12,7 +12,8 @@ enum class LightUnit { e_over_pi, e };
 // As written in manifest.json.
 constexpr const char* unit_name(LightUnit unit) { return unit == LightUnit::e ? "E" : "E/pi"; }
 
-// I = E/pi in the unit that a file holds. Every writer goes through here, those of E/pi too.
+// Light (I = E/pi, radiance, or coefficients of either) in the unit that a file holds. Every writer goes through here,
+// those of E/pi too.
 template <class T>
 constexpr T to_file_unit(T irradiance_over_pi, LightUnit unit) {
     return unit == LightUnit::e ? irradiance_over_pi * kPi : irradiance_over_pi;

@@ -5,10 +5,12 @@
 
 #include "base/check.h"
 #include "base/hash.h"
+#include "base/memory_use.h"
 #include "base/try.h"
 #include "chart/chart_picture.h"
 #include "image/colormap.h"
 #include "image/tonemap.h"
+#include "io/atomic_file.h"
 #include "io/baked.h"
 #include "io/gltf_write.h"
 #include "io/image_io.h"
@@ -48,16 +50,25 @@ std::vector<std::uint8_t> heat_map(const PagePreview& preview, float most) {
     return out;
 }
 
-// One exposure for all pages, from all covered texels.
+// One exposure for all pages, from their covered texels: all of them, or every k-th so that some million are enough.
 float exposure_of(const std::vector<PagePreview>& previews) {
-    Image all(0, 1, 3);
+    constexpr std::size_t kEnough = std::size_t{1} << 20;
+    std::size_t covered = 0;
     for (const PagePreview& preview : previews)
-        for (std::size_t i = 0; i < preview.covered.size(); ++i)
-            if (preview.covered[i] != 0)
-                all.data.insert(all.data.end(), &preview.irradiance.data[3 * i], &preview.irradiance.data[3 * i] + 3);
-    all.width = static_cast<std::uint32_t>(all.data.size() / 3);
+        covered += static_cast<std::size_t>(std::ranges::count_if(preview.covered, [](auto c) { return c != 0; }));
+    const std::size_t step = covered / kEnough + 1;
+    Image some(0, 1, 3);
+    some.data.reserve(3 * (covered / step + 1));
+    std::size_t seen = 0;
+    for (const PagePreview& preview : previews)
+        for (std::size_t i = 0; i < preview.covered.size(); ++i) {
+            if (preview.covered[i] == 0 || seen++ % step != 0) continue;
+            const float* const pixel = &preview.irradiance.data[3 * i];
+            some.data.insert(some.data.end(), pixel, pixel + 3);
+        }
+    some.width = static_cast<std::uint32_t>(some.data.size() / 3);
     // Enclosed and overlapped surfaces make much of an atlas dark: what is lit decides.
-    return auto_exposure(all, {}, {0.9, 0.6f});
+    return auto_exposure(some, {}, {0.9, 0.6f});
 }
 
 float most_samples(const std::vector<PagePreview>& previews) {
@@ -66,6 +77,23 @@ float most_samples(const std::vector<PagePreview>& previews) {
         for (const float count : preview.samples.data) most = std::max(most, count);
     return most;
 }
+
+// The files of all pages before they are compressed: no bake writes more but scene.glb, which is small beside them.
+std::uint64_t output_bytes(const Atlas& atlas) {
+    std::uint64_t pixels = 0;
+    for (const AtlasPage& page : atlas.pages) pixels += std::uint64_t{page.width} * page.height;
+    return pixels * kPagePixelBytes;
+}
+
+std::uint64_t bytes_in(const std::filesystem::path& folder) {
+    std::error_code error;
+    std::uint64_t sum = 0;
+    for (std::filesystem::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
+        if (const std::uintmax_t size = at->file_size(error); !error) sum += size;
+    return sum;
+}
+
+std::string megabytes(std::uint64_t bytes) { return std::to_string((bytes + (1u << 20) - 1) >> 20) + " MB"; }
 
 // The files that are baked must outlive the bake: baking out/scene.glb into out/ would replace it.
 Status check_not_input(const std::filesystem::path& output, const std::filesystem::path& input) {
@@ -83,7 +111,7 @@ struct BakeWriter::Impl {
     OutputFolder output;
     const LoadedScene& loaded;
     BakeOptions options;
-    const Context& context;
+    Context& context;
     ChartSet charts;
     Atlas atlas;
     std::string geometry_hash;
@@ -100,6 +128,35 @@ struct BakeWriter::Impl {
         const std::vector<std::uint32_t> ids = chart_ids(loaded.scene, charts, atlas, page);
         return write_png(file(PageFile::preview_charts, page), like.width, like.height, 3,
                          chart_picture(ids, atlas.pages[page], like));
+    }
+
+    Status write_page(const Lightmap& lightmap) {
+        LUMEL_CHECK(lightmap.page == pages.size(), lightmap.page, pages.size());
+        const LayerWeights weights = layer_weights(options.include);
+        WriteProgress progress(context, kPageWork + 3 * kPngWork);
+        LUMEL_TRY(ManifestPage page, write_page_files(output.path(), lightmap, weights, progress));
+        textures.push_back(lit_texture(lightmap, weights));
+        progress.add(3 * kPngWork);
+        page.display_strength = textures.back().strength;
+        previews.push_back(preview_of(lightmap, weights, kPreviewEdge));
+        LUMEL_TRY_STATUS(write_chart_preview(lightmap.page));
+        for (const PageFile kind : {PageFile::preview_atlas, PageFile::preview_charts, PageFile::preview_samples})
+            page.files.push_back({kind, "8-bit"});
+        pages.push_back(std::move(page));
+        return success();
+    }
+
+    [[nodiscard]] Status write_scene() const {
+        return write_lit_gltf(output.path() / kSceneFile, {*loaded.document, loaded.scene, charts, atlas, textures,
+                                                           options.include, geometry_hash});
+    }
+
+    Status finish(BakeReport& report, const Diagnostics& diagnostics) {
+        LUMEL_TRY_STATUS(write_previews());
+        LUMEL_TRY_STATUS(write_manifest(output.path() / kManifestFile,
+                                        {loaded.scene, charts, atlas, options, report, pages, geometry_hash}));
+        report.peak_memory_bytes = peak_memory();
+        return write_report(output.path() / kReportFile, report, options, diagnostics);
     }
 
     Status write_previews() {
@@ -121,7 +178,7 @@ BakeWriter::BakeWriter(BakeWriter&&) noexcept = default;
 BakeWriter& BakeWriter::operator=(BakeWriter&&) noexcept = default;
 
 Result<BakeWriter> BakeWriter::create(const std::filesystem::path& output, const LoadedScene& loaded,
-                                      const BakeOptions& options, const Context& context) {
+                                      const BakeOptions& options, Context& context) {
     LUMEL_TRY_STATUS(check_not_input(output, loaded.scene.source));
     LUMEL_TRY_STATUS(check_not_input(output, options.sky.file));
     LUMEL_TRY(OutputFolder folder, OutputFolder::create(output));
@@ -131,6 +188,15 @@ Result<BakeWriter> BakeWriter::create(const std::filesystem::path& output, const
 
 const std::filesystem::path& BakeWriter::folder() const { return impl_->output.path(); }
 
+Status BakeWriter::explain(Status status) const {
+    if (status.ok()) return status;
+    Error error = impl_->output.as_in_target(std::move(status).error());
+    if (error.code == ErrorCode::io && is_disk_full(error) && !impl_->atlas.pages.empty())
+        error.remedy += "; the whole output takes up to " + megabytes(output_bytes(impl_->atlas)) + ", of which " +
+                        megabytes(bytes_in(folder())) + " were written";
+    return error;
+}
+
 Status BakeWriter::layout(const WorldGeometry& geometry, const ChartSet& charts, const Atlas& atlas) {
     impl_->charts = charts;
     impl_->atlas = atlas;
@@ -138,33 +204,19 @@ Status BakeWriter::layout(const WorldGeometry& geometry, const ChartSet& charts,
     return success();
 }
 
-Status BakeWriter::page(const Lightmap& lightmap) {
-    LUMEL_CHECK(lightmap.page == impl_->pages.size(), lightmap.page, impl_->pages.size());
-    const LayerWeights weights = layer_weights(impl_->options.include);
-    LUMEL_TRY(ManifestPage page, write_page_files(folder(), lightmap, weights, impl_->context));
-    impl_->textures.push_back(lit_texture(lightmap, weights));
-    page.display_strength = impl_->textures.back().strength;
-    impl_->previews.push_back(preview_of(lightmap, weights, kPreviewEdge));
-    LUMEL_TRY_STATUS(impl_->write_chart_preview(lightmap.page));
-    for (const PageFile kind : {PageFile::preview_atlas, PageFile::preview_charts, PageFile::preview_samples})
-        page.files.push_back({kind, "8-bit"});
-    impl_->pages.push_back(std::move(page));
-    return success();
+Status BakeWriter::page(const Lightmap& lightmap) { return explain(impl_->write_page(lightmap)); }
+
+Status BakeWriter::write_scene() { return explain(impl_->write_scene()); }
+
+Status BakeWriter::write_view(std::size_t k, std::uint32_t width, std::uint32_t height,
+                              std::span<const std::uint8_t> rgb) {
+    return explain(write_png(folder() / (kViewStem + std::to_string(k) + ".png"), width, height, 3, rgb));
 }
 
-Status BakeWriter::write_scene() {
-    return write_lit_gltf(folder() / kSceneFile,
-                          {*impl_->loaded.document, impl_->loaded.scene, impl_->charts, impl_->atlas, impl_->textures,
-                           impl_->options.include, impl_->geometry_hash});
+Status BakeWriter::finish(BakeReport& report, const Diagnostics& diagnostics) {
+    return explain(impl_->finish(report, diagnostics));
 }
 
-Status BakeWriter::finish(const BakeReport& report, const Diagnostics& diagnostics) {
-    LUMEL_TRY_STATUS(impl_->write_previews());
-    LUMEL_TRY_STATUS(write_report(folder() / kReportFile, report, impl_->options, diagnostics));
-    return write_manifest(folder() / kManifestFile, {impl_->loaded.scene, impl_->charts, impl_->atlas, impl_->options,
-                                                     report, impl_->pages, impl_->geometry_hash});
-}
-
-Status BakeWriter::commit() { return impl_->output.commit(); }
+Status BakeWriter::commit() { return explain(impl_->output.commit()); }
 
 }  // namespace lumel

@@ -2,15 +2,21 @@
 #include "io/bake_writer.h"
 
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
 
+#include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <limits>
 #include <optional>
 #include <set>
 
+#include "base/memory_use.h"
 #include "base/try.h"
 #include "encode/l1.h"
 #include "image/tonemap.h"
+#include "io/atomic_file.h"
 #include "io/baked.h"
 #include "io/image_io.h"
 #include "io/manifest.h"
@@ -84,8 +90,9 @@ float plane_value(const std::filesystem::path& path, const std::string& name, st
 constexpr LayerWeights kAll{1, 1, 1};
 
 Result<ManifestPage> write(const TemporaryFolder& folder, const Lightmap& map, const LayerWeights& weights) {
-    const Context context(1);
-    return write_page_files(folder.path(), map, weights, context);
+    Context context(2);
+    WriteProgress progress(context, kPageWork);
+    return write_page_files(folder.path(), map, weights, progress);
 }
 
 TEST(PageFiles, HoldWhatTheirUnitsSay) {
@@ -179,10 +186,58 @@ TEST(PageFiles, ACancelledBakeStopsBetweenRows) {
     const TemporaryFolder folder;
     Context context(1);
     context.request_cancel();
-    const auto page = write_page_files(folder.path(), made_up_page(0, 8, 8), kAll, context);
+    WriteProgress progress(context, kPageWork);
+    const auto page = write_page_files(folder.path(), made_up_page(0, 8, 8), kAll, progress);
     ASSERT_FALSE(page.ok());
     EXPECT_EQ(page.error().code, ErrorCode::cancelled);
     EXPECT_EQ(folder.entries(), 0u);
+}
+
+// The bar moves while a page is written, and ends at its end.
+TEST(PageFiles, ReportProgressUpToOne) {
+    const TemporaryFolder folder;
+    Context context(2);
+    std::vector<double> fractions;
+    context.on_progress = [&](const Progress& progress) {
+        EXPECT_EQ(progress.stage, "write");
+        fractions.push_back(progress.fraction);
+    };
+    WriteProgress progress(context, kPageWork);
+    ASSERT_TRUE(write_page_files(folder.path(), made_up_page(0, 16, 256), kAll, progress).ok());
+    ASSERT_GT(fractions.size(), 20u);
+    EXPECT_TRUE(std::ranges::is_sorted(fractions));
+    EXPECT_GT(fractions.front(), 0.0);
+    EXPECT_NEAR(fractions.back(), 1.0, 1e-9);
+    // No step is larger than the master's 95 channels over its 256 rows, 32 at a time.
+    double before = 0.0;
+    for (const double fraction : fractions) {
+        EXPECT_LE(fraction - before, 95 / kPageWork / 8 + 1e-9);
+        before = fraction;
+    }
+}
+
+// A writer that forgot the unit of its file would go unnoticed as long as that is the unit of the bake itself: here it
+// is not, in any file.
+TEST(PageFiles, EveryLightGoesThroughTheUnitOfItsFile) {
+    const TemporaryFolder folder;
+    Context context(1);
+    WriteProgress progress(context, kPageWork);
+    const Lightmap map = made_up_page(0, 8, 8);
+    const auto all_e = [](PageFile) { return LightUnit::e; };
+    ASSERT_TRUE(write_page_files(folder.path(), map, kAll, progress, all_e).ok());
+    const auto stored = [&](PageFile kind, const char* channel) {
+        return double{plane_value(folder / page_file(kind, 0), channel, 4)} / kPi;
+    };
+    // Texel 3: I = 4.44 * (1, 2, 3); constant coefficient 3 I, of which L0 is the mean over the sphere.
+    const double green = 4.44 * 2, half = green * 0x1p-11;
+    EXPECT_NEAR(stored(PageFile::lightmap, "G"), green, 1e-5);
+    EXPECT_NEAR(stored(PageFile::irradiance, "G"), green, half);
+    EXPECT_NEAR(stored(PageFile::l1, "L0.G"), 3 * green * kSh0, 3 * half);
+    EXPECT_NEAR(stored(PageFile::master, "indirect.I.G"), 4 * 2, 1e-5);
+    EXPECT_NEAR(stored(PageFile::master, "indirect.L0.G"), 3 * 4 * 2, 3 * half);
+    EXPECT_NEAR(stored(PageFile::master, "variance.G"), 2 * kPi, 1e-5);
+    EXPECT_EQ(unit_of(PageFile::irradiance), LightUnit::e);
+    EXPECT_EQ(unit_of(PageFile::lightmap), LightUnit::e_over_pi);
 }
 
 TEST(LitTexture, IsAlbedoTimesIrradianceOverItsStrength) {
@@ -374,6 +429,36 @@ TEST(JsonSchema, RefusesWhatTheSchemaForbids) {
     Json lacking = manifest;
     lacking.erase("units");
     EXPECT_FALSE(schema("manifest").errors(lacking).empty());
+}
+
+// The report's peak is that of the process up to the report, not what the caller had measured before the writing.
+TEST(BakeWriter, TheReportsPeakIsOfAllThatWasDone) {
+    const TemporaryFolder folder;
+    Baked baked(folder / "out");
+    ASSERT_TRUE(baked.writer->write_scene().ok());
+    ASSERT_TRUE(baked.finish().ok());
+    const Json report = json_file(folder / "out/report.json");
+    EXPECT_GT(report["peak_memory_bytes"].get<double>(), 1e6);
+    EXPECT_LE(report["peak_memory_bytes"].get<std::uint64_t>(), peak_memory());
+}
+
+// A limit on the size of files stands for the disk: the error names the file where the user will look for it.
+TEST(BakeWriterDeathTest, AFullDiskIsToldInTheUsersTerms) {
+    const TemporaryFolder folder;
+    const auto full = [&] {
+        Baked baked(folder / "out");
+        rlimit limit{64, 64};
+        ::signal(SIGXFSZ, SIG_IGN);
+        ::setrlimit(RLIMIT_FSIZE, &limit);
+        const Status status = baked.writer->write_scene();
+        std::fprintf(stderr, "%s\n", status.ok() ? "no error" : status.error().text().c_str());
+        std::_Exit(status.ok() ? 1 : 0);
+    };
+    EXPECT_EXIT(full(), testing::ExitedWithCode(0), "/out/scene.glb: writing failed");
+    Error error{ErrorCode::io, "writing failed: " + std::generic_category().message(ENOSPC), "x", {}};
+    EXPECT_TRUE(is_disk_full(error));
+    error.message = "writing failed: " + std::generic_category().message(EACCES);
+    EXPECT_FALSE(is_disk_full(error));
 }
 
 TEST(BakeWriter, AbandonedBakesLeaveNothing) {

@@ -16,6 +16,7 @@ namespace {
 
 constexpr const char* kExtension = "LUMEL_lightmap";
 constexpr std::uint64_t kMaxSceneFile = std::uint64_t{4} << 30;
+constexpr std::uint64_t kLargestPage = 16384;
 constexpr const char* kOtherScene = "give the scene that was baked, with the same sidecar";
 
 Result<GltfDocumentPtr> read_lit_document(const std::filesystem::path& path) {
@@ -130,22 +131,26 @@ Result<std::vector<BakedTriangle>> read_uvs(const GltfDocument& document, const 
     return out;
 }
 
-// The pages' files, which lie beside scene.glb.
-Result<std::vector<Image>> read_pages(const GltfDocument& document, const std::filesystem::path& folder) {
-    std::vector<Image> out;
+struct PageEntry {
+    std::string file;
+    std::uint64_t width = 0, height = 0;
+};
+
+// What scene.glb says of its pages.
+Result<std::vector<PageEntry>> read_page_entries(const GltfDocument& document) {
+    std::vector<PageEntry> out;
     const Json& extension = *find_extension(document.root, kExtension);
     for (std::size_t p = 0; p < array_size(extension, "pages"); ++p) {
         LUMEL_TRY(const Json* page, element(extension, "pages", p, document.where));
-        LUMEL_TRY(const std::string name, required_string(*page, "lightmap", document.where));
-        LUMEL_TRY(const std::uint64_t width, required_count(*page, "width", document.where));
-        LUMEL_TRY(const std::uint64_t height, required_count(*page, "height", document.where));
-        if (std::filesystem::path(name).filename() != name)
-            return invalid(document.where, "names a lightmap outside its folder: " + name);
-        LUMEL_TRY(Image image, read_image(folder / name));
-        if (image.width != width || image.height != height || image.channels < 3)
-            return invalid((folder / name).string(), "is not the page that scene.glb describes",
-                           "the folder holds files of different bakes");
-        out.push_back(std::move(image));
+        PageEntry entry;
+        LUMEL_TRY(entry.file, required_string(*page, "lightmap", document.where));
+        LUMEL_TRY(entry.width, required_count(*page, "width", document.where));
+        LUMEL_TRY(entry.height, required_count(*page, "height", document.where));
+        if (std::filesystem::path(entry.file).filename() != entry.file)
+            return invalid(document.where, "names a lightmap outside its folder: " + entry.file);
+        if (entry.width > kLargestPage || entry.height > kLargestPage)
+            return invalid(document.where, "describes a page larger than any bake writes");
+        out.push_back(std::move(entry));
     }
     return out;
 }
@@ -158,16 +163,55 @@ Result<std::vector<BakedTriangle>> read_baked_uvs(const std::filesystem::path& s
     return read_uvs(*document, scene, geometry);
 }
 
-Result<BakedLighting> read_baked(const std::filesystem::path& folder, const Scene& scene,
-                                 const WorldGeometry& geometry) {
-    LUMEL_TRY(const GltfDocumentPtr document, read_lit_document(folder / kSceneFile));
+Result<BakedLighting> read_baked(const std::filesystem::path& folder, const Scene& scene, const WorldGeometry& geometry,
+                                 std::uint64_t max_bytes) {
     BakedLighting out;
-    LUMEL_TRY(out.triangles, read_uvs(*document, scene, geometry));
-    LUMEL_TRY(out.pages, read_pages(*document, folder));
-    for (const BakedTriangle& triangle : out.triangles)
-        if (triangle.page != kNone && triangle.page >= out.pages.size())
-            return invalid(document->where, "refers to a page that it does not describe");
+    {
+        LUMEL_TRY(const GltfDocumentPtr document, read_lit_document(folder / kSceneFile));
+        LUMEL_TRY(out.triangles_, read_uvs(*document, scene, geometry));
+        LUMEL_TRY(const std::vector<PageEntry> entries, read_page_entries(*document));
+        for (const PageEntry& entry : entries)
+            out.pages_.push_back({folder / entry.file,
+                                  static_cast<std::uint32_t>(entry.width),
+                                  static_cast<std::uint32_t>(entry.height),
+                                  {}});
+        for (const BakedTriangle& triangle : out.triangles_)
+            if (triangle.page != kNone && triangle.page >= out.pages_.size())
+                return invalid(document->where, "refers to a page that it does not describe");
+    }
+    out.cut_into_parts(max_bytes);
+    LUMEL_TRY_STATUS(out.load(0));
     return out;
+}
+
+// As many pages each as fit, in order. The page that is being read takes its room twice.
+void BakedLighting::cut_into_parts(std::uint64_t max_bytes) {
+    first_page_ = {0};
+    std::uint64_t sum = 0, largest = 0;
+    for (std::uint32_t p = 0; p < pages_.size(); ++p) {
+        const std::uint64_t bytes = loaded_page_bytes(std::uint64_t{pages_[p].width} * pages_[p].height);
+        sum += bytes;
+        largest = std::max(largest, bytes);
+        if (max_bytes == 0 || sum + largest <= max_bytes || first_page_.back() == p) continue;
+        first_page_.push_back(p);
+        sum = largest = bytes;
+    }
+    first_page_.push_back(static_cast<std::uint32_t>(pages_.size()));
+}
+
+Status BakedLighting::load(std::uint32_t part) {
+    if (part == loaded_) return success();
+    for (Page& page : pages_) page.image = {};
+    loaded_ = kNone;
+    for (std::uint32_t p = first_page_[part]; p < first_page_[part + 1]; ++p) {
+        Page& page = pages_[p];
+        LUMEL_TRY(page.image, read_image(page.file));
+        if (page.image.width != page.width || page.image.height != page.height || page.image.channels < 3)
+            return invalid(page.file.string(), "is not the page that scene.glb describes",
+                           "the folder holds files of different bakes");
+    }
+    loaded_ = part;
+    return success();
 }
 
 std::string hash_geometry(const WorldGeometry& geometry) {
@@ -197,10 +241,11 @@ Vec3 sample_bilinear(const Image& image, Vec2 uv) {
 }
 
 std::optional<Vec3> BakedLighting::irradiance(std::uint32_t triangle, float b1, float b2) const {
-    const BakedTriangle& t = triangles[triangle];
+    const BakedTriangle& t = triangles_[triangle];
     if (t.page == kNone) return std::nullopt;
+    if (pages_[t.page].image.data.empty()) return Vec3{};
     const Vec2 uv = t.uv[0] * (1.0f - b1 - b2) + t.uv[1] * b1 + t.uv[2] * b2;
-    return sample_bilinear(pages[t.page], uv);
+    return from_file_unit(sample_bilinear(pages_[t.page].image, uv), unit_of(PageFile::lightmap));
 }
 
 }  // namespace lumel

@@ -27,27 +27,36 @@ TEST(SampleBilinear, TexelCentresAreAtHalves) {
     EXPECT_EQ(sample_bilinear(image, {9.0f, 9.0f}).x, 3.0f);
 }
 
-// A scene of one triangle in a folder as a bake leaves it; the lightmap's red is x in texels, its green y.
+// A scene of triangles in a folder as a bake leaves it.
 struct Folder {
-    explicit Folder(const GltfBuilder& builder) : loaded(builder) {
+    explicit Folder(const GltfBuilder& builder, double texels_per_metre = 32, std::uint32_t max_page = 4096)
+        : loaded(builder) {
         ChartOptions options;
-        options.texels_per_metre = 32;
+        options.texels_per_metre = texels_per_metre;
+        options.max_page = max_page;
         geometry = flatten(loaded.scene(), loaded.context).value();
         charts = make_charts(loaded.scene(), geometry, options, loaded.context).value();
         atlas = make_atlas(loaded.scene(), geometry, charts, options, loaded.context).value();
-        const AtlasPage page = atlas.pages.at(0);
-        const std::vector<std::uint8_t> pixels(std::size_t{page.width} * page.height * 3);
-        const std::vector<LitTexture> textures{{encode_png(page.width, page.height, 3, pixels), 1.0f}};
+        std::vector<LitTexture> textures;
+        for (const AtlasPage& page : atlas.pages) {
+            const std::vector<std::uint8_t> pixels(std::size_t{page.width} * page.height * 3);
+            textures.push_back({encode_png(page.width, page.height, 3, pixels), 1.0f});
+        }
         EXPECT_TRUE(write_lit_gltf(folder / kSceneFile, {*loaded.result->document, loaded.scene(), charts, atlas,
                                                          textures, Include{}, hash_geometry(geometry)})
                         .ok());
-        Image image(page.width, page.height, 3);
-        for (std::uint32_t y = 0; y < page.height; ++y)
-            for (std::uint32_t x = 0; x < page.width; ++x) {
+        for (std::uint32_t p = 0; p < atlas.pages.size(); ++p) write_page(p);
+    }
+    // Red is x in texels, green y, blue the page plus one.
+    void write_page(std::uint32_t p) {
+        Image image(atlas.pages[p].width, atlas.pages[p].height, 3);
+        for (std::uint32_t y = 0; y < image.height; ++y)
+            for (std::uint32_t x = 0; x < image.width; ++x) {
                 image.at(x, y)[0] = float(x) + 0.5f;
                 image.at(x, y)[1] = float(y) + 0.5f;
+                image.at(x, y)[2] = float(p + 1);
             }
-        EXPECT_TRUE(write_exr(folder / page_file(PageFile::lightmap, 0), image, ExrType::full).ok());
+        EXPECT_TRUE(write_exr(folder / page_file(PageFile::lightmap, p), image, ExrType::full).ok());
     }
     Loaded loaded;
     WorldGeometry geometry;
@@ -75,6 +84,39 @@ TEST(ReadBaked, LooksUpTheTexelThatTheAtlasGave) {
         EXPECT_NEAR(value->x, texel.x, 2e-5);
         EXPECT_NEAR(value->y, texel.y, 2e-5);
     }
+}
+
+// Three triangles, too large for two to share a page: as many parts as the memory makes necessary, one loaded at a
+// time.
+TEST(ReadBaked, PagesThatDoNotFitTogetherAreLoadedInParts) {
+    GltfBuilder builder;
+    const std::size_t triangle = builder.triangle();
+    for (const float x : {0.0f, 2.0f, 4.0f}) builder.node({{"mesh", triangle}, {"translation", {x, 0, 0}}});
+    const Folder f(builder, 60, 64);
+    ASSERT_EQ(f.atlas.pages.size(), 3u);
+    std::uint64_t page = 0;
+    for (const AtlasPage& p : f.atlas.pages)
+        page = std::max(page, loaded_page_bytes(std::uint64_t{p.width} * p.height));
+    const auto read = [&](std::uint64_t bytes) {
+        return read_baked(f.folder.path(), f.loaded.scene(), f.geometry, bytes).value();
+    };
+    EXPECT_EQ(read(0).parts(), 1u);
+    EXPECT_EQ(read(4 * page).parts(), 1u) << "three pages, one of them twice";
+    EXPECT_EQ(read(3 * page).parts(), 2u);
+    EXPECT_EQ(read(1).parts(), 3u) << "less than a page is not possible";
+
+    BakedLighting baked = read(1);
+    for (const std::uint32_t part : {2u, 0u, 1u}) {
+        ASSERT_TRUE(baked.load(part).ok());
+        for (std::uint32_t t = 0; t < 3; ++t) {
+            const std::uint32_t of = f.atlas.triangle_uv(f.charts, f.geometry, f.loaded.scene(), t).page;
+            const auto light = baked.irradiance(t, 0.3f, 0.3f);
+            ASSERT_TRUE(light.has_value()) << "it has texels, be they loaded or not";
+            EXPECT_EQ(light->z, of == part ? float(of + 1) : 0.0f);
+        }
+    }
+    std::filesystem::remove(f.folder / "lightmap_2.exr");
+    EXPECT_FALSE(baked.load(2).ok());
 }
 
 TEST(ReadBaked, AnotherSceneIsRefused) {

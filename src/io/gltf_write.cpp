@@ -633,9 +633,9 @@ private:
                              {"strength", json_number(page_textures_[p].strength)}});
         root_["extensions"][kExtension] = {{"version", 1},
                                            {"units",
-                                            {{"lightmap", unit_name(LightUnit::e_over_pi)},
-                                             {"irradiance", unit_name(LightUnit::e)},
-                                             {"l1", unit_name(LightUnit::e_over_pi)},
+                                            {{"lightmap", unit_name(unit_of(PageFile::lightmap))},
+                                             {"irradiance", unit_name(unit_of(PageFile::irradiance))},
+                                             {"l1", unit_name(unit_of(PageFile::l1))},
                                              {"texture", "albedo x E/pi"}}},
                                            {"manifest", kManifestFile},
                                            {"geometry", in_.geometry_hash},

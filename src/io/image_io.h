@@ -41,16 +41,18 @@ Result<NamedChannels> read_exr_channels(const std::filesystem::path& path, std::
 
 enum class ExrType { half, full };
 
-// `row(y, channel, out)` fills one row of one channel, called for y ascending: large masters are never held as images.
 struct ExrChannelSource {
     std::string name;
     ExrType type = ExrType::full;
 };
-// With a context it stops between rows where that is cancelled, with that error.
+// Fills row y of all channels: pixel x of channel c is out[c * width + x]. Returns false, and need not touch `out`,
+// where all of it is zero. Rows are asked for a few at a time: large masters are never held as images.
+using ExrRow = std::function<bool(std::uint32_t y, std::span<float> out)>;
+// With a context its threads ask for rows, several at once, and as many compress them; the file is the same for any
+// number. Stops where that is cancelled, with that error. `progress` is called on this thread with 0..1.
 Status write_exr(const std::filesystem::path& path, std::uint32_t width, std::uint32_t height,
-                 std::span<const ExrChannelSource> channels,
-                 const std::function<void(std::uint32_t y, std::size_t channel, std::span<float> out)>& row,
-                 const Context* context = nullptr);
+                 std::span<const ExrChannelSource> channels, const ExrRow& row, Context* context = nullptr,
+                 const std::function<void(double)>& progress = {});
 Status write_exr(const std::filesystem::path& path, const Image& rgb, ExrType type);
 
 Status write_png(const std::filesystem::path& path, std::uint32_t width, std::uint32_t height, std::uint32_t channels,

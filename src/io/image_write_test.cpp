@@ -5,9 +5,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <set>
 
 #include "io/atomic_file.h"
 #include "io/image_io.h"
@@ -71,24 +73,70 @@ TEST(WriteExr, HalfFilesRoundToElevenBitsAndNeverOverflow) {
         EXPECT_NEAR(read->data[i], image.data[i], std::fabs(image.data[i]) * 0x1p-11f + 0x1p-25f);
 }
 
-TEST(WriteExr, RowsAreAskedForInOrderAndChannelsKeepTheirNames) {
+// Rows of one channel as 100 y + 10 c + x, rows that end in 7 empty.
+bool numbered_row(std::uint32_t y, std::size_t channels, std::span<float> out) {
+    if (y % 10 == 7) return false;
+    const std::size_t width = out.size() / channels;
+    for (std::size_t c = 0; c < channels; ++c)
+        for (std::size_t x = 0; x < width; ++x) out[c * width + x] = float(100 * y + 10 * c + x);
+    return true;
+}
+
+TEST(WriteExr, ChannelsKeepTheirNamesAndRowsTheirPlaces) {
     const TemporaryFolder folder;
     const std::vector<ExrChannelSource> channels{{"direct.L0.R", ExrType::full}, {"coverage", ExrType::half}};
-    std::uint32_t calls = 0;
-    const Status status =
-        write_exr(folder / "m.exr", 5, 40, channels, [&](std::uint32_t y, std::size_t c, std::span<float> out) {
-            EXPECT_EQ(y, calls / 2);
-            EXPECT_EQ(c, calls % 2);
-            ++calls;
-            for (std::size_t x = 0; x < out.size(); ++x) out[x] = float(100 * y + 10 * c + x);
-        });
-    ASSERT_TRUE(status.ok());
+    std::set<std::uint32_t> asked;
+    const auto row = [&](std::uint32_t y, std::span<float> out) {
+        EXPECT_TRUE(asked.insert(y).second);
+        return numbered_row(y, 2, out);
+    };
+    ASSERT_TRUE(write_exr(folder / "m.exr", 5, 40, channels, row).ok());
+    EXPECT_EQ(asked.size(), 40u);
     const std::vector<std::string> names{"coverage", "direct.L0.R"};
     const auto read = read_exr_channels(folder / "m.exr", names);
     ASSERT_TRUE(read.ok()) << read.error().text();
     ASSERT_EQ(read->planes.size(), 2u);
     EXPECT_EQ(read->planes[0][5 * 3 + 2], 312.0f);
     EXPECT_EQ(read->planes[1][5 * 39 + 4], 3904.0f);
+    for (std::size_t x = 0; x < 5; ++x) EXPECT_EQ(read->planes[1][5 * 17 + x], 0.0f) << "an empty row";
+}
+
+// Blocks of rows differ with the threads; the last one is cut short.
+TEST(WriteExr, AnyNumberOfThreadsWritesTheSameFile) {
+    const TemporaryFolder folder;
+    const std::vector<ExrChannelSource> channels{{"R", ExrType::full}, {"G", ExrType::half}};
+    const auto row = [](std::uint32_t y, std::span<float> out) { return numbered_row(y, 2, out); };
+    const auto bytes = [&](Context* context) {
+        double last = 0.0;
+        const Status status = write_exr(folder / "t.exr", 70, 333, channels, row, context, [&](double fraction) {
+            EXPECT_GT(fraction, last);
+            last = fraction;
+        });
+        EXPECT_TRUE(status.ok());
+        EXPECT_EQ(last, 1.0);
+        return read_file(folder / "t.exr", 1 << 20).value();
+    };
+    const auto alone = bytes(nullptr);
+    for (const unsigned threads : {1u, 2u, 5u}) {
+        Context context(threads);
+        EXPECT_TRUE(bytes(&context) == alone) << threads << " threads";
+    }
+}
+
+TEST(WriteExr, StopsBetweenRowsWhereCancelled) {
+    const TemporaryFolder folder;
+    Context context(2);
+    const std::vector<ExrChannelSource> channels{{"R", ExrType::full}};
+    std::atomic<std::uint32_t> asked{0};
+    const auto row = [&](std::uint32_t, std::span<float>) {
+        if (++asked == 40) context.request_cancel();
+        return false;
+    };
+    const Status status = write_exr(folder / "c.exr", 8, 4000, channels, row, &context);
+    ASSERT_FALSE(status.ok());
+    EXPECT_EQ(status.error().code, ErrorCode::cancelled);
+    EXPECT_LT(asked, 100u);
+    EXPECT_EQ(folder.entries(), 0u);
 }
 
 TEST(WritePng, RoundTripsEightBits) {

@@ -22,12 +22,12 @@ struct FileMeaning {
 };
 
 FileMeaning meaning_of(PageFile kind) {
-    constexpr const char* kOverPi = unit_name(LightUnit::e_over_pi);
+    const char* const unit = unit_name(unit_of(kind));
     switch (kind) {
-        case PageFile::lightmap: return {"lightmap", kOverPi, "irradiance"};
-        case PageFile::irradiance: return {"irradiance", unit_name(LightUnit::e), "irradiance"};
-        case PageFile::l1: return {"l1", kOverPi, "l1-normalised"};
-        case PageFile::master: return {"master", kOverPi, "l2-radiance-by-layer"};
+        case PageFile::lightmap: return {"lightmap", unit, "irradiance"};
+        case PageFile::irradiance: return {"irradiance", unit, "irradiance"};
+        case PageFile::l1: return {"l1", unit, "l1-normalised"};
+        case PageFile::master: return {"master", unit, "l2-radiance-by-layer"};
         case PageFile::ao: return {"ao", "1", "share-free"};
         case PageFile::bent_normal: return {"bent_normal", "1", "mean-free-direction"};
         case PageFile::sky_visibility: return {"sky_visibility", "1", "share-free"};
@@ -126,10 +126,10 @@ Json manifest_json(const ManifestInput& in) {
     out["input_hash"] = in.report.input_hash;
     out["geometry_hash"] = in.geometry_hash;
     out["scene"] = kSceneFile;
-    out["units"] = {{"lightmap", unit_name(LightUnit::e_over_pi)},
-                    {"irradiance", unit_name(LightUnit::e)},
-                    {"l1", unit_name(LightUnit::e_over_pi)},
-                    {"master", unit_name(LightUnit::e_over_pi)},
+    out["units"] = {{"lightmap", unit_name(unit_of(PageFile::lightmap))},
+                    {"irradiance", unit_name(unit_of(PageFile::irradiance))},
+                    {"l1", unit_name(unit_of(PageFile::l1))},
+                    {"master", unit_name(unit_of(PageFile::master))},
                     {"scene_texture", "albedo x E/pi"}};
     out["encoding"] = {{"lightmap", "irradiance"}, {"directional", "l1-normalised"}};
     out["frame"] = frame_json();
@@ -211,6 +211,7 @@ Json report_json(const BakeReport& report, const BakeOptions& options, const Dia
     out["texels"] = report.texels;
     out["invalid_texels"] = report.invalid_texels;
     out["texels_per_metre"] = report.texels_per_metre;
+    out["least_texels_per_metre"] = report.least_texels_per_metre;
     out["samples"] = report.samples;
     out["rays"] = report.rays;
     out["rays_per_second"] = number(report.rays_per_second);

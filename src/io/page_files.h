@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <string>
 
+#include "encode/units.h"
+
 namespace lumel {
 
 inline constexpr const char* kSceneFile = "scene.glb";
@@ -53,6 +55,12 @@ constexpr PageFileName page_file_name(PageFile kind) {
         case PageFile::preview_samples: return {"preview_samples_", ".png"};
     }
     return {"", ""};
+}
+
+// The unit of light in a file: what the writer writes, the manifest says and readers take back. Files of other things
+// have none.
+constexpr LightUnit unit_of(PageFile kind) {
+    return kind == PageFile::irradiance ? LightUnit::e : LightUnit::e_over_pi;
 }
 
 // "lightmap_0.exr"

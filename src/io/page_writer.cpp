@@ -17,10 +17,12 @@ namespace {
 constexpr std::array<const char*, 3> kRgb{"R", "G", "B"};
 constexpr std::array<const char*, 3> kXyz{"X", "Y", "Z"};
 
-// One channel of an EXR: fills a row from the texels of that row (kNone where there is none, which is zero).
+// Fills one row of one channel: out[x] is the value of texels[x], zero where that is kNone.
+using FillChannel = std::function<void(std::span<const std::uint32_t> texels, std::span<float> out)>;
+
 struct Channel {
     ExrChannelSource source;
-    std::function<void(std::span<const std::uint32_t> texels, std::span<float> out)> fill;
+    FillChannel fill;
 };
 
 template <class Value>
@@ -30,15 +32,8 @@ Channel channel(std::string name, ExrType type, Value value) {
             }};
 }
 
-Status write_channels(const std::filesystem::path& path, const Lightmap& map, const std::vector<Channel>& channels,
-                      const Context& context) {
-    std::vector<ExrChannelSource> sources;
-    sources.reserve(channels.size());
-    for (const Channel& c : channels) sources.push_back(c.source);
-    const auto row = [&](std::uint32_t y, std::size_t c, std::span<float> out) {
-        channels[c].fill(std::span(map.texel_at).subspan(std::size_t{y} * map.width, map.width), out);
-    };
-    return write_exr(path, map.width, map.height, sources, row, &context);
+bool is_empty(std::span<const std::uint32_t> texels) {
+    return std::ranges::all_of(texels, [](std::uint32_t t) { return t == kNone; });
 }
 
 const char* type_name(ExrType type) { return type == ExrType::half ? "half" : "float"; }
@@ -69,8 +64,8 @@ private:
 class PageWriter {
 public:
     PageWriter(const std::filesystem::path& folder, const Lightmap& map, const LayerWeights& weights,
-               const Context& context)
-        : folder_(folder), map_(map), weights_(weights), context_(context) {}
+               WriteProgress& progress, LightUnit (*unit)(PageFile))
+        : folder_(folder), map_(map), weights_(weights), progress_(progress), unit_(unit) {}
 
     Result<ManifestPage> write() {
         out_.width = map_.width;
@@ -102,60 +97,81 @@ private:
         return encode_l1(sum);
     }
 
-    Status write_file(PageFile kind, std::string type, const std::vector<Channel>& channels) {
+    // `fill` for the rows that have texels.
+    Status write_rows(PageFile kind, std::string type, const std::vector<ExrChannelSource>& channels,
+                      const std::function<void(std::span<const std::uint32_t> texels, std::span<float> out)>& fill) {
         out_.files.push_back({kind, std::move(type)});
-        return write_channels(file(kind), map_, channels, context_);
+        const auto row = [&](std::uint32_t y, std::span<float> out) {
+            const auto texels = std::span(map_.texel_at).subspan(std::size_t{y} * map_.width, map_.width);
+            if (is_empty(texels)) return false;
+            fill(texels, out);
+            return true;
+        };
+        const double work = static_cast<double>(channels.size());
+        LUMEL_TRY_STATUS(write_exr(file(kind), map_.width, map_.height, channels, row, &progress_.context(),
+                                   [&](double fraction) { progress_.within(fraction * work); }));
+        progress_.add(work);
+        return success();
     }
 
-    Status write_irradiance_in(PageFile kind, LightUnit unit, ExrType type) {
+    Status write_channels(PageFile kind, std::string type, const std::vector<Channel>& channels) {
+        std::vector<ExrChannelSource> sources;
+        sources.reserve(channels.size());
+        for (const Channel& c : channels) sources.push_back(c.source);
+        return write_rows(kind, std::move(type), sources, [&](auto texels, std::span<float> out) {
+            for (std::size_t c = 0; c < channels.size(); ++c)
+                channels[c].fill(texels, out.subspan(c * texels.size(), texels.size()));
+        });
+    }
+
+    Status write_irradiance_in(PageFile kind, ExrType type) {
         std::vector<Channel> channels;
         for (std::size_t c = 0; c < 3; ++c)
-            channels.push_back(channel(
-                kRgb[c], type, [this, c, unit](std::size_t t) { return to_file_unit(irradiance(t)[c], unit); }));
-        return write_file(kind, type_name(type), channels);
+            channels.push_back(channel(kRgb[c], type, [this, c, unit = unit_(kind)](std::size_t t) {
+                return to_file_unit(irradiance(t)[c], unit);
+            }));
+        return write_channels(kind, type_name(type), channels);
     }
 
-    Status write_lightmap() { return write_irradiance_in(PageFile::lightmap, LightUnit::e_over_pi, ExrType::full); }
+    Status write_lightmap() { return write_irradiance_in(PageFile::lightmap, ExrType::full); }
 
     Status write_irradiance() {
         HalfCheck check;
         for (std::size_t t = 0; t < map_.texels.size(); ++t)
-            for (std::size_t c = 0; c < 3; ++c) check.add(to_file_unit(irradiance(t)[c], LightUnit::e));
-        return write_irradiance_in(PageFile::irradiance, LightUnit::e, check.type());
+            for (std::size_t c = 0; c < 3; ++c) check.add(to_file_unit(irradiance(t)[c], unit_(PageFile::irradiance)));
+        return write_irradiance_in(PageFile::irradiance, check.type());
     }
 
     // L0.R .. L0.B, and per channel the normalised linear band as a world-space vector: L1n.R.X ..
     Status write_l1() {
         HalfCheck check;
         for (std::size_t t = 0; t < map_.texels.size(); ++t)
-            for (std::size_t c = 0; c < 3; ++c) check.add(l1(t).l0[c]);
+            for (std::size_t c = 0; c < 3; ++c) check.add(to_file_unit(l1(t).l0[c], unit_(PageFile::l1)));
         std::vector<ExrChannelSource> sources;
         for (std::size_t c = 0; c < 3; ++c) sources.push_back({std::string("L0.") + kRgb[c], check.type()});
         for (std::size_t c = 0; c < 3; ++c)
             for (std::size_t k = 0; k < 3; ++k)
                 sources.push_back({std::string("L1n.") + kRgb[c] + "." + kXyz[k], ExrType::half});
-        out_.files.push_back({PageFile::l1, check.type() == ExrType::half ? "half" : "half+float"});
-        std::vector<L1Texel> texels(map_.width);  // of one row: its channels are asked for one after another
-        const auto row = [&](std::uint32_t y, std::size_t channel, std::span<float> out) {
-            if (channel == 0) encode_l1_row(y, texels);
-            for (std::size_t x = 0; x < out.size(); ++x) out[x] = l1_number(texels[x], channel);
-        };
-        return write_exr(file(PageFile::l1), map_.width, map_.height, sources, row, &context_);
+        return write_rows(PageFile::l1, check.type() == ExrType::half ? "half" : "half+float", sources,
+                          [this](auto texels, std::span<float> out) {
+                              for (std::size_t x = 0; x < texels.size(); ++x) {
+                                  const L1Texel texel = texels[x] == kNone ? L1Texel{} : l1(texels[x]);
+                                  for (std::size_t c = 0; c < kL1Channels; ++c)
+                                      out[c * texels.size() + x] = l1_number(texel, c);
+                              }
+                          });
     }
 
-    void encode_l1_row(std::uint32_t y, std::vector<L1Texel>& out) const {
-        for (std::uint32_t x = 0; x < map_.width; ++x) {
-            const std::uint32_t t = map_.texel_at[std::size_t{y} * map_.width + x];
-            out[x] = t == kNone ? L1Texel{} : l1(t);
-        }
-    }
+    static constexpr std::size_t kL1Channels = 12;
 
-    // In the order of the file's channels.
-    static float l1_number(const L1Texel& texel, std::size_t channel) {
-        return channel < 3 ? texel.l0[channel] : texel.l1n[channel / 3 - 1][channel % 3];
+    // In the order of the file's channels. The linear band is a ratio: it has no unit.
+    [[nodiscard]] float l1_number(const L1Texel& texel, std::size_t channel) const {
+        return channel < 3 ? to_file_unit(texel.l0[channel], unit_(PageFile::l1))
+                           : texel.l1n[channel / 3 - 1][channel % 3];
     }
 
     [[nodiscard]] ExrType sh_type() const {
+        const LightUnit unit = unit_(PageFile::master);
         HalfCheck check;
         float largest = 0.0f;  // of all coefficients; the mean is that of the constant ones
         for (const auto& layers : map_.texels.layers) {
@@ -164,27 +180,31 @@ private:
                 constant += layer.sh[0];
                 for (const Vec3& v : layer.sh) largest = std::max(largest, max_component(max(v, -v)));
             }
-            for (std::size_t c = 0; c < 3; ++c) check.add(constant[c]);
+            for (std::size_t c = 0; c < 3; ++c) check.add(to_file_unit(constant[c], unit));
         }
-        check.add(largest);
+        check.add(to_file_unit(largest, unit));
         return check.type();
     }
 
     void add_layer(std::size_t l, ExrType type, std::vector<Channel>& channels) const {
         const std::string layer = kLayerNames[l];
+        const LightUnit unit = unit_(PageFile::master);
         const RadianceSums& texels = map_.texels;
         for (std::size_t i = 0; i < kShCoefficients; ++i)
             for (std::size_t c = 0; c < 3; ++c)
                 channels.push_back(channel(layer + ".L" + std::to_string(i) + "." + kRgb[c], type,
-                                           [&texels, l, i, c](std::size_t t) { return texels.layers[t][l].sh[i][c]; }));
+                                           [&texels, l, i, c, unit](std::size_t t) {
+                                               return to_file_unit(texels.layers[t][l].sh[i][c], unit);
+                                           }));
         for (std::size_t c = 0; c < 3; ++c)
-            channels.push_back(channel(layer + ".I." + kRgb[c], ExrType::full, [&texels, l, c](std::size_t t) {
-                return to_file_unit(texels.layers[t][l].irradiance[c], LightUnit::e_over_pi);
+            channels.push_back(channel(layer + ".I." + kRgb[c], ExrType::full, [&texels, l, c, unit](std::size_t t) {
+                return to_file_unit(texels.layers[t][l].irradiance[c], unit);
             }));
     }
 
     Status write_master() {
         const ExrType type = sh_type();
+        const LightUnit unit = unit_(PageFile::master);
         const RadianceSums& texels = map_.texels;
         std::vector<Channel> channels;
         for (std::size_t l = 0; l < kLayerCount; ++l) add_layer(l, type, channels);
@@ -193,9 +213,12 @@ private:
         channels.push_back(
             channel("count", ExrType::full, [&texels](std::size_t t) { return static_cast<float>(texels.count[t]); }));
         for (std::size_t c = 0; c < 3; ++c)
-            channels.push_back(channel(std::string("variance.") + kRgb[c], ExrType::full,
-                                       [&texels, c](std::size_t t) { return texels.variance[t][c]; }));
-        return write_file(PageFile::master, type == ExrType::half ? "half+float" : "float", channels);
+            channels.push_back(
+                channel(std::string("variance.") + kRgb[c], ExrType::full, [&texels, c, unit](std::size_t t) {
+                    // Of a light, hence twice.
+                    return to_file_unit(to_file_unit(texels.variance[t][c], unit), unit);
+                }));
+        return write_channels(PageFile::master, type == ExrType::half ? "half+float" : "float", channels);
     }
 
     Status write_bent_normal() {
@@ -203,7 +226,7 @@ private:
         for (std::size_t c = 0; c < 3; ++c)
             channels.push_back(
                 channel(kRgb[c], ExrType::half, [this, c](std::size_t t) { return map_.texels.bent_normal[t][c]; }));
-        return write_file(PageFile::bent_normal, "half", channels);
+        return write_channels(PageFile::bent_normal, "half", channels);
     }
 
     // 0..1 as 0..255, linear.
@@ -213,13 +236,16 @@ private:
             if (const std::uint32_t t = map_.texel_at[i]; t != kNone)
                 pixels[i] = static_cast<std::uint8_t>(std::clamp(values[t], 0.0f, 1.0f) * 255.0f + 0.5f);
         out_.files.push_back({kind, "8-bit"});
-        return write_png(file(kind), map_.width, map_.height, 1, pixels);
+        LUMEL_TRY_STATUS(write_png(file(kind), map_.width, map_.height, 1, pixels));
+        progress_.add(kPngWork);
+        return success();
     }
 
     const std::filesystem::path& folder_;
     const Lightmap& map_;
     const LayerWeights& weights_;
-    const Context& context_;
+    WriteProgress& progress_;
+    LightUnit (*unit_)(PageFile);
     ManifestPage out_;
 };
 
@@ -241,8 +267,9 @@ float display_strength(const std::vector<Vec3>& reflected, float brightest) {
 }  // namespace
 
 Result<ManifestPage> write_page_files(const std::filesystem::path& folder, const Lightmap& map,
-                                      const LayerWeights& weights, const Context& context) {
-    return PageWriter(folder, map, weights, context).write();
+                                      const LayerWeights& weights, WriteProgress& progress,
+                                      LightUnit (*unit)(PageFile)) {
+    return PageWriter(folder, map, weights, progress, unit).write();
 }
 
 LitTexture lit_texture(const Lightmap& map, const LayerWeights& weights) {

@@ -125,8 +125,9 @@ TEST(DecodeImage, PngsAreReadAsStored) {
 // What write_exr wrote, with one function per pixel and channel.
 std::vector<std::byte> exr_bytes(test::TemporaryFolder& folder, const std::vector<ExrChannelSource>& channels) {
     const auto path = folder / "image.exr";
-    const Status status = write_exr(path, 5, 3, channels, [](std::uint32_t y, std::size_t c, std::span<float> out) {
-        for (std::size_t x = 0; x < out.size(); ++x) out[x] = float(x) + 10 * float(y) + 100 * float(c);
+    const Status status = write_exr(path, 5, 3, channels, [](std::uint32_t y, std::span<float> out) {
+        for (std::size_t i = 0; i < out.size(); ++i) out[i] = float(i % 5) + 10 * float(y) + 100 * float(i / 5);
+        return true;
     });
     EXPECT_TRUE(status.ok());
     return read_file(path, 1 << 20).value();

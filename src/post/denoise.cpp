@@ -197,6 +197,8 @@ Status denoise(const TexelBuffer& texels, const DenoiseOptions& options, Radianc
         write_back(before, first_before, sums);
         std::swap(now, before);
         first_before = first;
+        context.report("denoise", static_cast<double>(std::min(row + kRowsPerBand, denoiser.rows())) /
+                                      static_cast<double>(denoiser.rows()));
     }
     write_back(before, first_before, sums);
     return success();

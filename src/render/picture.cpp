@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "base/try.h"
 #include "math/constants.h"
 #include "math/sampler.h"
 
@@ -41,7 +42,7 @@ private:
 class PixelTracer {
 public:
     PixelTracer(const Transport& transport, const PathIntegrator& integrator, const PathOptions& path, const Lens& lens,
-                const PictureOptions& options, const BakedIrradiance* baked)
+                const PictureOptions& options, const BakedLight* baked)
         : transport_(transport),
           integrator_(integrator),
           path_(path),
@@ -50,8 +51,9 @@ public:
           baked_(baked),
           workspace_(integrator.make_workspace()) {}
 
-    Vec3 pixel(std::uint32_t x, std::uint32_t y) {
-        const std::uint32_t key = sampler_key(path_.seed ^ (kPictureKey << 48), (std::uint64_t{y} << 32) | x);
+    // `light_scale`: what the light of further parts counts in this pixel.
+    Vec3 pixel(std::uint32_t x, std::uint32_t y, float& light_scale) {
+        const std::uint32_t key = pixel_key(x, y);
         Vec3 sum{}, lit{};
         std::uint32_t lit_count = 0, surfaces = 0;
         for (std::uint32_t base = 0; base < options_.samples; base += kWavefrontLanes) {
@@ -65,11 +67,31 @@ public:
             path_trace(key, base, traced, lit, lit_count);
         }
         // Void paths leave the mean: the surfaces seen are lit by the mean of those that could be lit.
-        if (lit_count > 0) sum += lit * (static_cast<float>(surfaces) / static_cast<float>(lit_count));
-        return sum * (1.0f / static_cast<float>(options_.samples));
+        light_scale = lit_count > 0 ? static_cast<float>(surfaces) / static_cast<float>(lit_count) : 0.0f;
+        light_scale *= 1.0f / static_cast<float>(options_.samples);
+        return sum * (1.0f / static_cast<float>(options_.samples)) + lit * light_scale;
+    }
+
+    // The baked light alone.
+    Vec3 further_light(std::uint32_t x, std::uint32_t y, float light_scale) {
+        if (light_scale == 0.0f) return {};
+        const std::uint32_t key = pixel_key(x, y);
+        Vec3 lit{};
+        for (std::uint32_t base = 0; base < options_.samples; base += kWavefrontLanes) {
+            const std::uint32_t n = std::min<std::uint32_t>(kWavefrontLanes, options_.samples - base);
+            see(x, y, key, base, n);
+            std::uint32_t others = 0;
+            for (std::uint32_t i = 0; i < n; ++i) shade(i, others);
+            lit += baked_light_;
+        }
+        return lit * light_scale;
     }
 
 private:
+    [[nodiscard]] std::uint32_t pixel_key(std::uint32_t x, std::uint32_t y) const {
+        return sampler_key(path_.seed ^ (kPictureKey << 48), (std::uint64_t{y} << 32) | x);
+    }
+
     // Nearest visible surfaces, back faces of single-sided ones culled.
     void see(std::uint32_t x, std::uint32_t y, std::uint32_t key, std::uint32_t base, std::uint32_t n) {
         for (std::uint32_t i = 0; i < n; ++i) {
@@ -103,7 +125,7 @@ private:
         const Vec3 albedo = transport_.surfaces.albedo(hit.triangle, hit.b1, hit.b2);
         const Vec3 emission = transport_.surfaces.emission(hit.triangle, hit.b1, hit.b2);
         if (baked_ && !hit.back_face)
-            if (const std::optional<Vec3> irradiance = (*baked_)(hit.triangle, hit.b1, hit.b2)) {
+            if (const std::optional<Vec3> irradiance = baked_->irradiance(hit.triangle, hit.b1, hit.b2)) {
                 ++baked_count_;
                 baked_light_ += albedo * *irradiance;
                 return emission;
@@ -134,7 +156,7 @@ private:
     const PathOptions& path_;
     const Lens& lens_;
     const PictureOptions& options_;
-    const BakedIrradiance* baked_;
+    const BakedLight* baked_;
     PathIntegrator::WorkspacePtr workspace_;
 
     std::array<Ray, kWavefrontLanes> rays_;
@@ -161,26 +183,34 @@ Camera look_at(Vec3 eye, Vec3 target, float vertical_fov) {
 }
 
 Result<Image> render_picture(const Transport& transport, const PathOptions& path, const Camera& camera,
-                             const PictureOptions& options, const BakedIrradiance* baked, Context& context) {
+                             const PictureOptions& options, const BakedLight* baked, Context& context) {
     Image image(options.width, options.height, 3);
     const PathIntegrator integrator(transport, path);
     const Lens lens(camera, options);
     std::vector<std::unique_ptr<PixelTracer>> tracers(context.threads());
     for (auto& tracer : tracers)
         tracer = std::make_unique<PixelTracer>(transport, integrator, path, lens, options, baked);
+    const std::uint32_t parts = baked ? baked->parts : 1;
+    std::vector<float> light_scale(parts > 1 ? image.data.size() / 3 : 0);
     const std::uint64_t rays_before = transport.tracer.statistics().rays;
-    const bool done = parallel_for(
-        context, std::size_t{options.width} * options.height, 32,
-        [&](const ChunkRange& range) {
-            for (std::size_t i = range.begin; i < range.end; ++i) {
-                const auto x = static_cast<std::uint32_t>(i % options.width);
-                const auto y = static_cast<std::uint32_t>(i / options.width);
-                const Vec3 color = tracers[range.worker]->pixel(x, y);
-                for (std::size_t c = 0; c < 3; ++c) image.at(x, y)[c] = color[c];
-            }
-        },
-        "render", [&] { return transport.tracer.statistics().rays - rays_before; });
-    if (!done) return Error{ErrorCode::cancelled, "the render was cancelled", {}, {}};
+    for (std::uint32_t part = 0; part < parts; ++part) {
+        if (baked && baked->load) LUMEL_TRY_STATUS(baked->load(part));
+        const bool done = parallel_for(
+            context, std::size_t{options.width} * options.height, 32,
+            [&](const ChunkRange& range) {
+                for (std::size_t i = range.begin; i < range.end; ++i) {
+                    const auto x = static_cast<std::uint32_t>(i % options.width);
+                    const auto y = static_cast<std::uint32_t>(i / options.width);
+                    PixelTracer& tracer = *tracers[range.worker];
+                    float scale = part > 0 ? light_scale[i] : 0.0f;
+                    const Vec3 color = part > 0 ? tracer.further_light(x, y, scale) : tracer.pixel(x, y, scale);
+                    if (part == 0 && parts > 1) light_scale[i] = scale;
+                    for (std::size_t c = 0; c < 3; ++c) image.at(x, y)[c] += color[c];
+                }
+            },
+            "render", [&] { return transport.tracer.statistics().rays - rays_before; });
+        if (!done) return Error{ErrorCode::cancelled, "the render was cancelled", {}, {}};
+    }
     return image;
 }
 

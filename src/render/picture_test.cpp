@@ -28,7 +28,7 @@ Scene walls(bool near_faces_camera, bool double_sided) {
 
 Camera front_view() { return look_at({0, 0, 2}, {0, 0, 0}, 0.8f); }
 
-Image picture(const test::TracedScene& traced, const Camera& camera, const BakedIrradiance* baked = nullptr,
+Image picture(const test::TracedScene& traced, const Camera& camera, const BakedLight* baked = nullptr,
               std::uint32_t samples = 4, std::uint32_t bounces = 0) {
     Context context(2);
     PathOptions path;
@@ -74,7 +74,7 @@ TEST(Picture, MissesShowTheSky) {
 
 TEST(Picture, TheBakeLightsFrontFacesOnly) {
     Context context(1);
-    const BakedIrradiance two = [](std::uint32_t, float, float) { return Vec3{2, 2, 2}; };
+    const BakedLight two{[](std::uint32_t, float, float) { return Vec3{2, 2, 2}; }};
     const test::TracedScene front(walls(true, true), context);
     expect_everywhere(picture(front, front_view(), &two), kNearGlow + Vec3{0.5f, 0.25f, 0.125f} * 2.0f, kRounding);
     const test::TracedScene back(walls(false, true), context);
@@ -86,7 +86,7 @@ TEST(Picture, WhatHasNoTexelsIsTraced) {
     Scene scene = walls(true, false);
     scene.sky.color = {1, 1, 1};
     const test::TracedScene traced(std::move(scene), context);
-    const BakedIrradiance none = [](std::uint32_t, float, float) { return std::optional<Vec3>(); };
+    const BakedLight none{[](std::uint32_t, float, float) { return std::optional<Vec3>(); }};
     const Image with = picture(traced, front_view(), &none, 64), without = picture(traced, front_view(), nullptr, 64);
     EXPECT_EQ(with.data, without.data);
     // A free wall under a white sky: E/pi = 1 on all that is seen.
@@ -105,6 +105,71 @@ TEST(Picture, TheSameBitsForAnyNumberOfThreads) {
     const Image a = render_picture(traced.transport, path, camera, options, nullptr, one).value();
     const Image b = render_picture(traced.transport, path, camera, options, nullptr, eight).value();
     EXPECT_EQ(a.data, b.data);
+}
+
+// Three boxes under a sky on a floor that has no texels.
+Scene boxes() {
+    test::SceneBuilder b;
+    const auto white = b.material({0.8f, 0.6f, 0.7f});
+    b.object("floor", white, [](Mesh& m) { test::add_quad(m, {-4, 0, 4}, {8, 0, 0}, {0, 0, -8}); });
+    for (const float x : {-2.0f, 0.0f, 2.0f})
+        b.object("box", white, [x](Mesh& m) { test::add_box(m, {x - 0.5f, 0, -0.5f}, {x + 0.5f, 1, 0.5f}, false); });
+    b.scene().sky.color = {0.4f, 0.6f, 1.0f};
+    return b.build();
+}
+
+struct Level {
+    Context context{2};
+    test::TracedScene traced{boxes(), context};
+    Camera camera = look_at({0, 3, 6}, {0, 0.5f, 0}, 0.9f);
+
+    [[nodiscard]] std::optional<Vec3> light(std::uint32_t triangle) const {
+        const std::uint32_t instance = traced.geometry.triangles[triangle].instance;
+        if (instance == 0) return std::nullopt;
+        return Vec3{1, 2, 3} * static_cast<float>(instance);
+    }
+    Image render(const BakedLight& baked) {
+        PathOptions path;
+        path.bounces = 1;
+        return render_picture(traced.transport, path, camera, {48, 27, 80}, &baked, context).value();
+    }
+};
+
+TEST(RenderPicture, OfABakeInPartsIsThatOfTheWhole) {
+    Level level;
+    const BakedLight whole{[&](std::uint32_t t, float, float) { return level.light(t); }};
+    std::uint32_t loaded = 99;
+    const BakedLight parts{
+        [&](std::uint32_t t, float, float) {
+            const auto light = level.light(t);
+            if (!light) return light;
+            return std::optional(level.traced.geometry.triangles[t].instance == loaded + 1 ? *light : Vec3{});
+        },
+        3,
+        [&](std::uint32_t part) {
+            loaded = part;
+            return success();
+        }};
+    const Image a = level.render(whole), b = level.render(parts);
+    float brightest = 0.0f;
+    for (std::size_t i = 0; i < a.data.size(); ++i) {
+        // The same 80 numbers summed in another order.
+        EXPECT_NEAR(a.data[i], b.data[i], 1e-5f * (1.0f + a.data[i]));
+        brightest = std::max(brightest, a.data[i]);
+    }
+    EXPECT_GT(brightest, 5.0f) << "the third box is not in the picture";
+}
+
+TEST(RenderPicture, APartThatCannotBeLoadedIsAnError) {
+    Level level;
+    const BakedLight broken{[](std::uint32_t, float, float) { return std::optional(Vec3{}); }, 2,
+                            [](std::uint32_t part) -> Status {
+                                if (part == 0) return success();
+                                return Error{ErrorCode::io, "gone", {}, {}};
+                            }};
+    const auto picture = render_picture(level.traced.transport, {}, level.camera, {8, 8, 1}, &broken, level.context);
+    ASSERT_FALSE(picture.ok());
+    EXPECT_EQ(picture.error().message, "gone");
 }
 
 TEST(Views, TheScenesOwnCamerasComeFirst) {

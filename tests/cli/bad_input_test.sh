@@ -76,6 +76,18 @@ for pair in --preset=ultra --samples=many --samples=-4 --sun-direction=1,2 --sun
     --max-memory=abc --resolution=0x5 --resolution=99999x99999 --threads=5000; do
     expect 2 "${pair%%=*}" bake ok.gltf -o x --resolution 32x32 "$pair"
 done
+# Nothing is no value: not "as if it were not given".
+for option in --sky --sun-direction; do
+    expect 2 "$option" bake ok.gltf -o x "${quick[@]}" $option ''
+    expect 2 "$option" render ok.gltf -o v.png $option ''
+done
+for option in --resolution --max-memory; do
+    expect 2 "$option" bake ok.gltf -o x --preset preview $option ''
+done
+for option in --camera --baked --resolution; do
+    expect 2 "$option" render ok.gltf -o v.png $option ''
+done
+[ -e x ] && complain 'an option without a value was baked'
 for pair in --sun-angle=1 --sun-color=1,1,1 --sun-illuminance=5; do
     expect 2 --sun-direction bake ok.gltf -o x "${quick[@]}" "$pair"
     expect 2 --sun-direction render ok.gltf -o v.png "$pair"
@@ -111,6 +123,12 @@ expect 1 side.lumel.json bake side.gltf -o out "${quick[@]}"
 expect 1 --sky bake dark.gltf -o out "${quick[@]}"
 expect 1 text.glb bake ok.gltf -o out "${quick[@]}" --sky text.glb
 expect 1 --max-memory bake ok.gltf -o out "${quick[@]}" --max-memory 1K
+# What it says it needs is enough, and is not exceeded.
+need=$(sed -n 's/.*this bake needs \([0-9]*\) MB.*/\1/p' err.txt)
+expect 1 "needs $need MB" bake ok.gltf -o need --preset preview --samples 1 --threads 1 --resolution 32x32 --max-memory $((need - 1))M
+expect 0 '' bake ok.gltf -o need --preset preview --samples 1 --threads 1 --resolution 32x32 --views 1 --max-memory "${need}M"
+peak=$(sed -n 's/.*"peak_memory_bytes": \([0-9]*\).*/\1/p' need/report.json)
+[ "$peak" -le $((need << 20)) ] || complain "a bake that needs $need MB took $peak bytes"
 expect 1 'is not a folder' bake ok.gltf -o text.glb "${quick[@]}"
 expect 1 'would be replaced' bake out/scene.glb -o out "${quick[@]}"
 mkdir web

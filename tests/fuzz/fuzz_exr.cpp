@@ -10,8 +10,9 @@ namespace {
 std::vector<std::byte> seed(const std::vector<lumel::ExrChannelSource>& channels) {
     const auto path =
         std::filesystem::temp_directory_path() / ("lumel-fuzz-seed-" + std::to_string(::getpid()) + ".exr");
-    (void)lumel::write_exr(path, 5, 3, channels, [](std::uint32_t y, std::size_t c, std::span<float> out) {
-        for (std::size_t x = 0; x < out.size(); ++x) out[x] = static_cast<float>(x + 10 * y + 100 * c);
+    (void)lumel::write_exr(path, 5, 3, channels, [](std::uint32_t y, std::span<float> out) {
+        for (std::size_t i = 0; i < out.size(); ++i) out[i] = static_cast<float>(i % 5 + 10 * y + 100 * (i / 5));
+        return true;
     });
     auto bytes = lumel::read_file(path, 1 << 20);
     std::error_code ignored;
