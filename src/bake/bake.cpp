@@ -144,7 +144,10 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
     LUMEL_TRY(const WorldGeometry geometry, flatten(scene, context));
     report.input_hash = hash_scene(scene).hex();
     const SurfaceReader surfaces(scene, geometry);
-    const LightSet lights(scene, geometry, surfaces);
+    const LightSet lights = [&] {
+        const StageTimer timer(report, "lights");
+        return LightSet(scene, geometry, surfaces);
+    }();
     if (lights.empty())
         return Error{ErrorCode::invalid_input, "the scene has no light, no emissive surface and no sky", scene.source,
                      "give it a sky, for example --sky 1,1,1, or a sun with --sun-direction"};

@@ -48,7 +48,7 @@ LightSet::LightSet(const Scene& scene, const WorldGeometry& geometry, SurfaceRea
     if (choice_ == Choice::power)
         share_by_power();
     else
-        build_tree();
+        build_trees();
 }
 
 void LightSet::add_sky() {
@@ -113,27 +113,38 @@ void LightSet::share_by_power() {
     share_units(powers, shapes_.size(), local_ends_);
 }
 
-void LightSet::build_tree() {
+void LightSet::build_trees() {
     std::vector<LightBounds> bounds;
     bounds.reserve(shapes_.size() + triangles_.size());
     for (const Local& local : shapes_)
         bounds.push_back(std::visit([](const auto& shape) { return shape.bounds(); }, local.shape));
     for (const std::uint32_t triangle : triangles_)
         bounds.push_back(EmissiveTriangle(*geometry_, surfaces_, triangle).bounds(*scene_));
-    tree_ = LightTree(bounds);
+    // What the artist's controls switch off or dim is not worth its full share of samples.
+    const bool one = std::ranges::all_of(shapes_, [&](const Local& local) {
+        return artist_scale(local.light, false) == artist_scale(local.light, true);
+    });
+    for (const bool bounced : {false, true}) {
+        if (bounced && one) break;
+        std::vector<LightBounds> scaled_bounds = bounds;
+        for (std::size_t i = 0; i < shapes_.size(); ++i)
+            scaled_bounds[i].intensity *= double{strength(artist_scale(shapes_[i].light, bounced))};
+        trees_.emplace_back(scaled_bounds);
+    }
 }
 
-LightSet::Chosen LightSet::choose_local(const Receiver& receiver, float u) const {
+LightSet::Chosen LightSet::choose_local(const Receiver& receiver, float u, bool bounced) const {
     if (choice_ == Choice::power) {
         const lumel::Choice chosen = choose(local_ends_, u);
         return {static_cast<std::uint32_t>(chosen.index), probability(chosen.units)};
     }
-    const LightTree::Chosen chosen = tree_.choose(receiver, u);
+    const LightTree::Chosen chosen = tree(bounced).choose(receiver, u);
     return {chosen.light == LightTree::kNoLight ? kNone : chosen.light, probability(chosen.units)};
 }
 
-float LightSet::probability_of(const Receiver& receiver, std::uint32_t local) const {
-    return probability(choice_ == Choice::power ? units_of(local_ends_, local) : tree_.units_of(receiver, local));
+float LightSet::probability_of(const Receiver& receiver, std::uint32_t local, bool bounced) const {
+    return probability(choice_ == Choice::power ? units_of(local_ends_, local)
+                                                : tree(bounced).units_of(receiver, local));
 }
 
 bool LightSet::empty() const { return suns_.empty() && !has_sky_ && !has_local(); }
@@ -180,7 +191,7 @@ LightHit LightSet::sky(Vec3 direction) const {
 
 LightSample LightSet::sample_local(const Receiver& receiver, float u_select, Vec2 u, bool bounced) const {
     if (!has_local()) return {};
-    const auto [index, chance] = choose_local(receiver, u_select);
+    const auto [index, chance] = choose_local(receiver, u_select, bounced);
     if (index == kNone) return {};
     const Vec3 point = receiver.position;
     if (index >= shapes_.size()) {
@@ -198,16 +209,16 @@ LightHit LightSet::intersect_shape(std::uint32_t index, const Receiver& receiver
     const Local& local = shapes_[index];
     LightHit hit =
         std::visit([&](const auto& shape) { return shape.intersect(receiver.position, direction); }, local.shape);
-    if (hit.pdf > 0.0f) hit.pdf *= probability_of(receiver, index);
+    if (hit.pdf > 0.0f) hit.pdf *= probability_of(receiver, index, bounced);
     return scaled(hit, artist_scale(local.light, bounced));
 }
 
 LightHit LightSet::emissive(const Receiver& receiver, std::uint32_t triangle, float b1, float b2, Vec3 direction,
-                            float distance, bool back_face) const {
+                            float distance, bool back_face, bool bounced) const {
     if (!is_emitter(geometry_->triangles[triangle])) return {};
     LightHit hit = EmissiveTriangle(*geometry_, surfaces_, triangle).hit(b1, b2, direction, distance, back_face);
     const std::uint32_t local = local_of_triangle_.empty() ? kNone : local_of_triangle_[triangle];
-    hit.pdf *= local == kNone ? 0.0f : probability_of(receiver, local);
+    hit.pdf *= local == kNone ? 0.0f : probability_of(receiver, local, bounced);
     return hit;
 }
 

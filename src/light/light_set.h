@@ -63,7 +63,7 @@ public:
     // What a ray of the receiver that met an emissive triangle brings, and the density of sample_local there. Only the
     // front emits, unless double-sided.
     [[nodiscard]] LightHit emissive(const Receiver& receiver, std::uint32_t triangle, float b1, float b2,
-                                    Vec3 direction, float distance, bool back_face) const;
+                                    Vec3 direction, float distance, bool back_face, bool bounced) const;
     // Area lights that are not geometry (rectangle, disc, sphere, point and spot with a radius): they never block rays;
     // every one that the ray crosses before `max_distance` adds its light. Calls add(LightHit) for each.
     template <class Add>
@@ -93,8 +93,9 @@ private:
         std::uint32_t local;  // kNone: none
         float probability;
     };
-    [[nodiscard]] Chosen choose_local(const Receiver& receiver, float u) const;
-    [[nodiscard]] float probability_of(const Receiver& receiver, std::uint32_t local) const;
+    [[nodiscard]] Chosen choose_local(const Receiver& receiver, float u, bool bounced) const;
+    [[nodiscard]] float probability_of(const Receiver& receiver, std::uint32_t local, bool bounced) const;
+    [[nodiscard]] const LightTree& tree(bool bounced) const { return trees_[bounced && trees_.size() > 1 ? 1 : 0]; }
     [[nodiscard]] Vec3 to_map(Vec3 direction) const;
     [[nodiscard]] Vec3 to_world(Vec3 direction) const;
     void add_sky();
@@ -103,7 +104,7 @@ private:
     void add_shape(Shape shape, std::uint32_t light);
     void add_emissive_triangles();
     void share_by_power();
-    void build_tree();
+    void build_trees();
 
     const Scene* scene_;
     const WorldGeometry* geometry_;
@@ -113,7 +114,7 @@ private:
     std::vector<Local> shapes_;
     std::vector<std::uint32_t> triangles_;
     Choice choice_;
-    LightTree tree_;                                // for Choice::tree
+    std::vector<LightTree> trees_;                  // for Choice::tree; one more where bounced light is another
     std::vector<std::uint32_t> local_ends_;         // for Choice::power: math/discrete.h
     std::vector<std::uint32_t> local_of_triangle_;  // per world triangle the number, or kNone; empty: none emits
     std::vector<std::uint32_t> hittable_;           // into shapes_

@@ -144,7 +144,7 @@ void meet_everything(const Fixture& f, Vec3 origin, Vec3 direction, Add&& add) {
         const float det = dot(e1, p), b1 = dot(s, p) / det, b2 = dot(direction, q) / det, distance = dot(e2, q) / det;
         if (!(b1 >= 0) || !(b2 >= 0) || b1 + b2 > 1 || distance <= 0) continue;
         const bool back = dot(direction, f.world.geometry.geometric_normal(t)) > 0;
-        add(f.lights->emissive({origin, kUp}, t, b1, b2, direction, distance, back));
+        add(f.lights->emissive({origin, kUp}, t, b1, b2, direction, distance, back, false));
     }
 }
 
@@ -188,7 +188,7 @@ TEST(LightSet, EmissiveSamplesNameTheirTriangle) {
         seen[s.triangle - 2] = true;
     }
     EXPECT_TRUE(seen[0] && seen[1]);
-    EXPECT_EQ(f.lights->emissive({{0, 0, 0}, kUp}, 0, 0.2f, 0.2f, {0, -1, 0}, 1, false).radiance, Vec3{});
+    EXPECT_EQ(f.lights->emissive({{0, 0, 0}, kUp}, 0, 0.2f, 0.2f, {0, -1, 0}, 1, false, false).radiance, Vec3{});
 }
 
 TEST(LightSet, PowersBeyondAllMeasureDoNotBreakTheChoice) {
@@ -212,7 +212,7 @@ TEST(LightSet, OccludersDoNotEmit) {
     builder.scene().instances[0].node_class = NodeClass::occluder;
     const Fixture f(builder);
     EXPECT_TRUE(f.lights->empty());
-    EXPECT_EQ(f.lights->emissive({{0, 0, 0}, kUp}, 0, 0.2f, 0.2f, {0, 1, 0}, 1, false).radiance, Vec3{});
+    EXPECT_EQ(f.lights->emissive({{0, 0, 0}, kUp}, 0, 0.2f, 0.2f, {0, 1, 0}, 1, false, false).radiance, Vec3{});
 }
 
 TEST(LightSet, ADimLightIsChosenNowAndThenBesideABrightOne) {

@@ -78,80 +78,141 @@ namespace {
 
 double angle_of(float cosine) { return arccosine(std::clamp(double{cosine}, -1.0, 1.0)); }
 
+// Angle between unit vectors; exact to rounding where they are nearly parallel, too.
+double angle_between(Vec3 a, Vec3 b) {
+    const double ax = a.x, ay = a.y, az = a.z, bx = b.x, by = b.y, bz = b.z;
+    const double x = ay * bz - az * by, y = az * bx - ax * bz, z = ax * by - ay * bx;
+    return arctangent2(std::sqrt(x * x + y * y + z * z), ax * bx + ay * by + az * bz);
+}
+
 struct Cone {
-    Vec3 axis;
-    float cosine;
+    Vec3 axis{0, 0, 1};
+    double half = 0.0;  // angle; pi: all directions
 };
 
-// The smallest cone around both; a little wider, so that rounding cannot cut anything off.
+// The smallest cone around both, or a little more.
 Cone enclose(Cone a, Cone b) {
-    constexpr Cone kAll{{0, 0, 1}, -1.0f};
-    constexpr float kMargin = 1e-6f;
-    if (a.cosine <= -1.0f || b.cosine <= -1.0f) return kAll;
-    if (a.cosine > b.cosine) std::swap(a, b);  // a is the wider one
-    const double wide = angle_of(a.cosine), narrow = angle_of(b.cosine);
-    const double between = angle_of(dot(a.axis, b.axis));
-    if (std::min(between + narrow, double{kPi}) <= wide) return a;
-    const double half = 0.5 * (wide + between + narrow);
-    const Vec3 aside = b.axis - a.axis * dot(a.axis, b.axis);
-    if (half >= double{kPi} || !(length(aside) > 1e-6f)) return kAll;
-    const SinCosDouble turn = sincos_radians(half - wide);
-    const Vec3 axis =
-        normalize(a.axis * static_cast<float>(turn.cosine) + normalize(aside) * static_cast<float>(turn.sine));
-    return {axis, std::max(-1.0f, static_cast<float>(sincos_radians(half).cosine) - kMargin)};
+    constexpr double kPiDouble{kPi};
+    if (a.half >= kPiDouble || b.half >= kPiDouble) return {{0, 0, 1}, kPiDouble};
+    if (a.half < b.half) std::swap(a, b);
+    if (a.axis == b.axis) return a;
+    const double between = angle_between(a.axis, b.axis);
+    if (between + b.half <= a.half) return a;
+    const double half = 0.5 * (a.half + between + b.half);
+    if (half >= kPiDouble) return {{0, 0, 1}, kPiDouble};
+    const Vec3 aside = normalize_or(b.axis - a.axis * dot(a.axis, b.axis), {});
+    // So close together that rounding decides which way to turn: stay, and open wider.
+    constexpr double kClose = 1e-3;
+    if (between < kClose || kPiDouble - between < kClose || aside == Vec3{})
+        return {a.axis, std::min(kPiDouble, between + b.half)};
+    const SinCosDouble turn = sincos_radians(half - a.half);
+    const Vec3 axis = a.axis * static_cast<float>(turn.cosine) + aside * static_cast<float>(turn.sine);
+    constexpr double kRounding = 1e-6;  // of the axis
+    return {normalize(axis), std::min(kPiDouble, half + kRounding)};
 }
 
-LightBounds enclose(const LightBounds& a, const LightBounds& b) {
-    if (!(a.intensity > 0.0)) return b;
-    if (!(b.intensity > 0.0)) return a;
-    LightBounds out;
-    for (std::size_t c = 0; c < 3; ++c) {
-        out.low[c] = std::min(a.low[c], b.low[c]);
-        out.high[c] = std::max(a.high[c], b.high[c]);
+// LightBounds with their cone as an angle, for the many unions of a build.
+struct Group {
+    Vec3 low{}, high{};
+    Cone facing;
+    double emission = 0.0;  // angle
+    double intensity = 0.0;
+    float reach = 0.0f;
+    bool both_sides = false;
+
+    Group() = default;
+    explicit Group(const LightBounds& b)
+        : low(b.low),
+          high(b.high),
+          facing{b.axis, b.cos_facing <= -1.0f ? double{kPi} : angle_of(b.cos_facing)},
+          emission(angle_of(b.cos_emission)),
+          intensity(b.intensity),
+          reach(b.reach),
+          both_sides(b.both_sides) {}
+
+    void add(const Group& other) {
+        if (!(other.intensity > 0.0)) return;
+        if (!(intensity > 0.0)) {
+            *this = other;
+            return;
+        }
+        for (std::size_t c = 0; c < 3; ++c) {
+            low[c] = std::min(low[c], other.low[c]);
+            high[c] = std::max(high[c], other.high[c]);
+        }
+        facing = enclose(facing, other.facing);
+        emission = std::max(emission, other.emission);
+        intensity += other.intensity;
+        reach = std::max(reach, other.reach);
+        both_sides = both_sides || other.both_sides;
     }
-    const Cone cone = enclose(Cone{a.axis, a.cos_facing}, Cone{b.axis, b.cos_facing});
-    out.axis = cone.axis;
-    out.cos_facing = cone.cosine;
-    out.cos_emission = std::min(a.cos_emission, b.cos_emission);
-    out.intensity = a.intensity + b.intensity;
-    out.reach = std::max(a.reach, b.reach);
-    out.both_sides = a.both_sides || b.both_sides;
-    return out;
-}
 
-// Conty Estevez and Kulla 2018, equation 1: directions that the group shines in.
-double orientation_measure(const LightBounds& b) {
-    const double facing = angle_of(b.cos_facing);
-    const double whole = std::min(facing + angle_of(b.cos_emission), double{kPi});
-    const SinCosDouble f = sincos_radians(facing);
-    return 2.0 * double{kPi} * (1.0 - f.cosine) +
-           0.5 * double{kPi} *
-               (2.0 * whole * f.sine - sincos_radians(facing - 2.0 * whole).cosine - 2.0 * facing * f.sine + f.cosine);
-}
+    [[nodiscard]] LightBounds bounds() const {
+        constexpr float kRounding = 1e-6f;
+        const auto wider = [](double angle) {
+            return std::max(-1.0f, static_cast<float>(sincos_radians(angle).cosine) - kRounding);
+        };
+        LightBounds b;
+        b.low = low;
+        b.high = high;
+        b.axis = facing.axis;
+        b.cos_facing = facing.half >= double{kPi} ? -1.0f : wider(facing.half);
+        b.cos_emission = wider(emission);
+        b.intensity = intensity;
+        b.reach = reach;
+        b.both_sides = both_sides;
+        return b;
+    }
 
-double extent_measure(const LightBounds& b) {
-    const Vec3 d = b.high - b.low;
-    // Rows of lights have no area; they are long all the same.
-    constexpr double kThin = 1e-3;
-    return 2.0 * (double{d.x} * d.y + double{d.y} * d.z + double{d.z} * d.x) + kThin * double{dot(d, d)};
-}
+    // Conty Estevez and Kulla 2018, equation 1: directions that the group shines in.
+    [[nodiscard]] double orientation_measure() const {
+        const double whole = std::min(facing.half + emission, double{kPi});
+        const SinCosDouble f = sincos_radians(facing.half);
+        return 2.0 * double{kPi} * (1.0 - f.cosine) +
+               0.5 * double{kPi} *
+                   (2.0 * whole * f.sine - sincos_radians(facing.half - 2.0 * whole).cosine -
+                    2.0 * facing.half * f.sine + f.cosine);
+    }
+
+    [[nodiscard]] double extent_measure() const {
+        const double x = double{high.x} - low.x, y = double{high.y} - low.y, z = double{high.z} - low.z;
+        // Rows of lights have no area; they are long all the same.
+        constexpr double kThin = 1e-3;
+        return 2.0 * (x * y + y * z + z * x) + kThin * (x * x + y * y + z * z);
+    }
+
+    // What the part of a split with these lights costs.
+    [[nodiscard]] double cost() const {
+        return intensity > 0.0 ? intensity * orientation_measure() * extent_measure() : 0.0;
+    }
+};
 
 }  // namespace
 
 class LightTree::Builder {
 public:
     Builder(std::span<const LightBounds> lights, LightTree& tree) : lights_(lights), tree_(tree) {
-        for (std::uint32_t i = 0; i < lights.size(); ++i)
-            if (lights[i].intensity > 0.0) order_.push_back(i);
+        groups_.reserve(lights.size());
+        std::size_t guaranteed = 0;
+        for (std::uint32_t i = 0; i < lights.size(); ++i) {
+            groups_.emplace_back(lights[i]);
+            if (!(lights[i].intensity > 0.0)) continue;
+            order_.push_back(i);
+            guaranteed += lights[i].must_be_sampled ? 1 : 0;
+        }
+        LUMEL_CHECK(guaranteed < kUnits / 2, guaranteed);
         tree_.trail_.assign(lights.size(), 0);
-        if (!order_.empty()) build(0, order_.size(), 0, 0);
+        if (order_.empty()) return;
+        tree_.nodes_.reserve(2 * order_.size() - 1);
+        build(0, order_.size(), 0, 0);
     }
 
 private:
     static constexpr std::size_t kBuckets = 12;
     static constexpr std::uint32_t kBalancedFrom = 32;  // depth; halving from there on stays within the trail's 64 bits
 
-    void build(std::size_t begin, std::size_t end, std::uint64_t trail, std::uint32_t depth) {
+    // Returns all lights of the range as one.
+    Group build(std::size_t begin, std::size_t end, std::uint64_t trail, std::uint32_t depth) {
         LUMEL_CHECK(depth < 64, depth);
         const std::size_t index = tree_.nodes_.size();
         tree_.nodes_.emplace_back();
@@ -161,70 +222,77 @@ private:
             tree_.nodes_[index].light = light;
             tree_.nodes_[index].guaranteed = lights_[light].must_be_sampled ? 1 : 0;
             tree_.trail_[light] = trail;
-            return;
+            return groups_[light];
         }
         const std::size_t middle = split(begin, end, depth);
-        build(begin, middle, trail, depth + 1);
+        Group group = build(begin, middle, trail, depth + 1);
         const auto second = static_cast<std::uint32_t>(tree_.nodes_.size());
-        build(middle, end, trail | (std::uint64_t{1} << depth), depth + 1);
+        group.add(build(middle, end, trail | (std::uint64_t{1} << depth), depth + 1));
         Node& node = tree_.nodes_[index];
-        const Node &a = tree_.nodes_[index + 1], &b = tree_.nodes_[second];
-        node.bounds = enclose(a.bounds, b.bounds);
+        node.bounds = group.bounds();
         node.second = second;
-        node.guaranteed = a.guaranteed + b.guaranteed;
+        node.guaranteed = tree_.nodes_[index + 1].guaranteed + tree_.nodes_[second].guaranteed;
+        return group;
     }
 
-    [[nodiscard]] Vec3 centre(std::uint32_t light) const { return (lights_[light].low + lights_[light].high) * 0.5f; }
+    [[nodiscard]] float centre(std::uint32_t light, std::size_t axis) const {
+        return 0.5f * lights_[light].low[axis] + 0.5f * lights_[light].high[axis];
+    }
+
+    struct Split {
+        double cost = std::numeric_limits<double>::infinity();
+        std::size_t axis = 3, bucket = 0;  // 3: none
+    };
+
+    // By the centres' place between `low` and `low + size`.
+    [[nodiscard]] std::size_t bucket_of(std::uint32_t light, std::size_t axis, float low, float size) const {
+        const float t = (centre(light, axis) - low) / size * static_cast<float>(kBuckets);
+        return t > 0.0f ? std::min(static_cast<std::size_t>(std::min(t, float{kBuckets})), kBuckets - 1) : 0;
+    }
+
+    [[nodiscard]] Split best_along(std::size_t axis, std::span<const std::uint32_t> range, float low,
+                                   float size) const {
+        std::array<Group, kBuckets> buckets;
+        Group all;
+        for (const std::uint32_t light : range) buckets[bucket_of(light, axis, low, size)].add(groups_[light]);
+        std::array<double, kBuckets> after{};
+        for (std::size_t k = kBuckets - 1; k > 0; --k) {
+            all.add(buckets[k]);
+            after[k - 1] = all.cost();
+        }
+        all.add(buckets[0]);
+        const Vec3 extent = all.high - all.low;
+        const double thin = max_component(extent) / std::max(extent[axis], std::numeric_limits<float>::min());
+        Split best;
+        Group before;
+        for (std::size_t k = 0; k + 1 < kBuckets; ++k) {
+            before.add(buckets[k]);
+            const double cost = thin * (before.cost() + after[k]);
+            if (cost < best.cost) best = {cost, axis, k};
+        }
+        return best;
+    }
 
     // Reorders the range; returns where its second part begins.
     std::size_t split(std::size_t begin, std::size_t end, std::uint32_t depth) {
         const auto range = std::span(order_).subspan(begin, end - begin);
-        Vec3 low = centre(range[0]), high = low;
-        LightBounds all;
-        for (const std::uint32_t light : range) {
-            const Vec3 c = centre(light);
-            for (std::size_t k = 0; k < 3; ++k) {
-                low[k] = std::min(low[k], c[k]);
-                high[k] = std::max(high[k], c[k]);
-            }
-            all = enclose(all, lights_[light]);
-        }
-        const auto bucket_of = [&](std::uint32_t light, std::size_t axis) {
-            const float t = (centre(light)[axis] - low[axis]) / (high[axis] - low[axis]);
-            return std::min(static_cast<std::size_t>(t * static_cast<float>(kBuckets)), kBuckets - 1);
-        };
-        const Vec3 size = all.high - all.low;
-        double best = std::numeric_limits<double>::infinity();
-        std::size_t best_axis = 3, best_bucket = 0;
+        Vec3 low{}, size{};
+        Split best;
         for (std::size_t axis = 0; axis < 3 && depth < kBalancedFrom; ++axis) {
-            if (!(high[axis] > low[axis])) continue;
-            std::array<LightBounds, kBuckets> buckets;
+            float high = low[axis] = centre(range[0], axis);
             for (const std::uint32_t light : range) {
-                LightBounds& bucket = buckets[bucket_of(light, axis)];
-                bucket = enclose(bucket, lights_[light]);
+                low[axis] = std::min(low[axis], centre(light, axis));
+                high = std::max(high, centre(light, axis));
             }
-            std::array<double, kBuckets> after{};
-            LightBounds bounds;
-            for (std::size_t k = kBuckets - 1; k > 0; --k) {
-                bounds = enclose(bounds, buckets[k]);
-                after[k - 1] = cost(bounds);
-            }
-            const double thin = max_component(size) / std::max(size[axis], std::numeric_limits<float>::min());
-            bounds = {};
-            for (std::size_t k = 0; k + 1 < kBuckets; ++k) {
-                bounds = enclose(bounds, buckets[k]);
-                const double total = thin * (cost(bounds) + after[k]);
-                if (total < best) {
-                    best = total;
-                    best_axis = axis;
-                    best_bucket = k;
-                }
-            }
+            size[axis] = high - low[axis];
+            if (!(size[axis] > 0.0f) || !std::isfinite(size[axis])) continue;
+            const Split along = best_along(axis, range, low[axis], size[axis]);
+            if (along.cost < best.cost) best = along;
         }
         std::size_t middle = begin;
-        if (best_axis < 3) {
+        if (best.axis < 3) {
             const auto second = std::stable_partition(range.begin(), range.end(), [&](std::uint32_t light) {
-                return bucket_of(light, best_axis) <= best_bucket;
+                return bucket_of(light, best.axis, low[best.axis], size[best.axis]) <= best.bucket;
             });
             middle = begin + static_cast<std::size_t>(second - range.begin());
         }
@@ -232,19 +300,13 @@ private:
         return middle == begin || middle == end ? begin + (end - begin) / 2 : middle;
     }
 
-    static double cost(const LightBounds& b) {
-        return b.intensity > 0.0 ? b.intensity * orientation_measure(b) * extent_measure(b) : 0.0;
-    }
-
     std::span<const LightBounds> lights_;
     LightTree& tree_;
+    std::vector<Group> groups_;  // of each light
     std::vector<std::uint32_t> order_;
 };
 
-LightTree::LightTree(std::span<const LightBounds> lights) {
-    LUMEL_CHECK(lights.size() < kUnits / 2, lights.size());
-    const Builder build(lights, *this);
-}
+LightTree::LightTree(std::span<const LightBounds> lights) { const Builder build(lights, *this); }
 
 // How many of a node's units its first child gets: by importance, of what those that must be sampled leave over.
 std::uint32_t LightTree::first_share(const Node& node, std::uint32_t index, std::uint32_t units,

@@ -21,7 +21,7 @@ double importance(const LightBounds& bounds, const Receiver& receiver);
 class LightTree {
 public:
     LightTree() = default;
-    // At most kUnits / 2 lights. An intensity of zero is never chosen.
+    // Fewer than kUnits / 2 that must be sampled. An intensity of zero is never chosen.
     explicit LightTree(std::span<const LightBounds> lights);
 
     static constexpr std::uint32_t kNoLight = 0xffffffffu;

@@ -114,22 +114,18 @@ TEST(LightTree, LeavesOutNoLightThatMustBeSampled) {
     EXPECT_GT(dark, 1000u);
 }
 
-// The importance of a node is a bound in the sense that counts: zero only where all below it are.
-TEST(LightTree, AGroupIsDarkOnlyIfAllInItAre) {
-    const std::vector<LightBounds> lights = crowd(300, 5);
-    const LightTree tree(lights);
-    for (const Receiver& receiver : receivers(300)) {
-        double sum = 0;
-        for (const LightBounds& light : lights)
-            if (light.must_be_sampled) sum += importance(light, receiver);
-        const LightTree::Chosen chosen = tree.choose(receiver, 0.0f);
-        if (sum > 0.0) {
-            std::uint64_t units = 0;
-            for (std::uint32_t i = 0; i < lights.size(); ++i) units += tree.units_of(receiver, i);
-            EXPECT_GT(units, 0u);
-        } else if (chosen.light != LightTree::kNoLight) {
-            EXPECT_FALSE(lights[chosen.light].must_be_sampled);
-        }
+// A group is dark only if all in it are: what must be sampled and lights the receiver keeps its unit under every split.
+TEST(LightTree, ALightLosesNothingInCompany) {
+    for (std::uint32_t seed = 20; seed < 40; ++seed) {
+        const std::vector<LightBounds> lights = crowd(30, seed);
+        const LightTree tree(lights);
+        for (const Receiver& receiver : receivers(50))
+            for (std::uint32_t i = 0; i < lights.size(); ++i) {
+                const LightTree alone(std::vector<LightBounds>{lights[i]});
+                if (lights[i].must_be_sampled && alone.units_of(receiver, 0) > 0) {
+                    EXPECT_GT(tree.units_of(receiver, i), 0u) << seed << " " << i;
+                }
+            }
     }
 }
 
@@ -175,6 +171,34 @@ TEST(LightTree, PrefersWhatIsNearAndFacesTheReceiver) {
     EXPECT_GT(far, 0);
     EXPECT_EQ(tree.units_of(receiver, 2), 0u) << "faces away";
     EXPECT_EQ(tree.units_of(receiver, 3), 0u) << "below the horizon";
+}
+
+// A ceiling of panels that shine down and, a floor above, brighter ones that shine up, turned about the origin.
+std::vector<LightBounds> turned_ceiling(const Frame& turn) {
+    std::vector<LightBounds> lights;
+    for (int i = 0; i < 64; ++i)
+        for (const float height : {3.0f, 6.0f}) {
+            const Vec3 at{0.5f * static_cast<float>(i % 8) - 2.0f, height, 0.5f * static_cast<float>(i / 8) - 2.0f};
+            lights.push_back(patch_bounds(turn.to_world(at), 0.02f, turn.to_world({0, height > 3.0f ? 1.0f : -1.0f, 0}),
+                                          height > 3.0f ? 10.0 : 1.0));
+        }
+    return lights;
+}
+
+// Rounding of normals that are one and the same must not make a group shine all ways: what faces away gets nothing,
+// whichever way the scene is turned.
+TEST(LightTree, GroupsOfParallelPanelsKeepTheirDirection) {
+    test::Random random(8);
+    for (int i = 0; i < 200; ++i) {
+        const Vec2 u = random.pair();
+        const Frame turn(i == 0 ? Vec3{0, 0, 1} : direction_from_z(1.0f - 2.0f * u.x, u.y));
+        const std::vector<LightBounds> lights = turned_ceiling(turn);
+        const LightTree tree(lights);
+        const Receiver receiver{{0, 0, 0}, turn.to_world({0, 1, 0})};
+        std::uint64_t down = 0;
+        for (std::uint32_t k = 0; k < lights.size(); k += 2) down += tree.units_of(receiver, k);
+        EXPECT_GT(static_cast<double>(down), 0.99 * kUnits) << i;
+    }
 }
 
 TEST(LightTree, ManyLightsAtOnePlaceStayWithinTheTrail) {

@@ -10,7 +10,8 @@
 namespace lumel {
 
 std::uint64_t enclosed_points(std::span<const SurfaceStart> starts, float reach, std::uint32_t key,
-                              const Tracer& tracer, std::span<Ray> rays, std::span<Hit> hits) {
+                              const Tracer& tracer, const WorldGeometry& geometry, std::span<Ray> rays,
+                              std::span<Hit> hits) {
     LUMEL_CHECK(starts.size() <= kSamplesPerTexel && rays.size() >= starts.size() && hits.size() >= starts.size(),
                 starts.size(), rays.size(), hits.size());
     std::array<std::uint8_t, kSamplesPerTexel> suspects, far{};
@@ -32,6 +33,7 @@ std::uint64_t enclosed_points(std::span<const SurfaceStart> starts, float reach,
         std::size_t kept = 0;
         for (std::size_t i = 0; i < count; ++i) {
             if (hits[i].missed() || !hits[i].back_face) continue;
+            if ((geometry.triangles[hits[i].triangle].flags & kDoubleSided) == 0) continue;
             if (hits[i].t > reach && ++far[suspects[i]] > kFarAllowed) continue;
             suspects[kept++] = suspects[i];
         }

@@ -2,7 +2,7 @@
 // their rays are void; behind double-sided ones, which is how many tools export everything, they would darken what is
 // seen of the texel.
 // Based on: O'Donnell 2018 (validity of sample points by back faces). Different here: what decides is that a point
-// sees nothing but back faces, most of them near, so that double-sided surfaces need no exception.
+// sees nothing but the back faces of double-sided surfaces, most of them near.
 #pragma once
 
 #include <cstdint>
@@ -13,12 +13,14 @@
 
 namespace lumel {
 
-// Rays over the hemisphere of each point that must all meet back faces, three quarters of them within `reach` metres.
+// Rays over the hemisphere of each point that must all meet backs of double-sided surfaces, three quarters of them
+// within `reach` metres.
 inline constexpr std::uint32_t kEnclosureRays = 16;
 
 // Bit s: point s of `starts` (at most 64) is enclosed. `key`: of the rays' directions (math/sampler.h). `rays` and
 // `hits` are scratch memory for as many as there are points.
 std::uint64_t enclosed_points(std::span<const SurfaceStart> starts, float reach, std::uint32_t key,
-                              const Tracer& tracer, std::span<Ray> rays, std::span<Hit> hits);
+                              const Tracer& tracer, const WorldGeometry& geometry, std::span<Ray> rays,
+                              std::span<Hit> hits);
 
 }  // namespace lumel

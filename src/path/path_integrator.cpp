@@ -8,7 +8,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <tuple>
 
 #include "base/check.h"
 #include "base/parallel.h"
@@ -309,7 +308,7 @@ void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w
             if (triangle.flags & kEmissive)
                 arrive(lane, Layer::direct,
                        lights.emissive({vertex.position, vertex.normal}, hit.triangle, hit.b1, hit.b2, vertex.direction,
-                                       hit.t, hit.back_face));
+                                       hit.t, hit.back_face, !first));
             if (bounce == options_.bounces || (triangle.flags & kOccluderOnly)) continue;
 
             // The path stands on a new surface.
@@ -439,17 +438,16 @@ void PathIntegrator::gather_irradiance(std::span<const PathStart> starts, Worksp
     trace_paths(starts, workspace, sink);
 }
 
-// Leaves out the enclosed points, unless all are; returns how many remain and whether they are enclosed.
-std::pair<std::size_t, bool> PathIntegrator::open_points(std::size_t n, float reach, std::uint32_t key,
-                                                         Workspace& w) const {
-    const std::uint64_t enclosed =
-        enclosed_points(std::span(w.surfaces).first(n), reach, mix32(key), transport_.tracer, w.rays, w.hits);
+// Leaves out the enclosed points, unless all are; returns how many remain.
+std::size_t PathIntegrator::open_points(std::size_t n, float reach, std::uint32_t key, Workspace& w) const {
+    const std::uint64_t enclosed = enclosed_points(std::span(w.surfaces).first(n), reach, mix32(key), transport_.tracer,
+                                                   transport_.geometry, w.rays, w.hits);
     const auto shut = static_cast<std::size_t>(std::popcount(enclosed));
-    if (shut == 0 || shut == n) return {n, shut == n};
+    if (shut == 0 || shut == n) return n;
     std::size_t kept = 0;
     for (std::size_t i = 0; i < n; ++i)
         if ((enclosed >> i & 1u) == 0) w.surfaces[kept++] = w.surfaces[i];
-    return {kept, false};
+    return kept;
 }
 
 void PathIntegrator::gather_texel(const GatherSite& site, Workspace& w, RadianceSums& out, std::size_t index,
@@ -461,14 +459,13 @@ void PathIntegrator::gather_texel(const GatherSite& site, Workspace& w, Radiance
         options_.two_sided && (transport_.geometry.triangles[points[0].triangle].flags & kDoubleSided) != 0;
 
     std::size_t n = points.size();
-    bool enclosed = false;
     std::fill(w.sides.begin(), w.sides.end(), std::uint8_t{0});
     surface_starts(points, std::span(w.sides).first(n), w, w.surfaces);
     if (both_sides) {
         std::fill(w.sides.begin(), w.sides.end(), std::uint8_t{1});
         surface_starts(points, std::span(w.sides).first(n), w, w.back_surfaces);
     } else if (any_double_sided_) {
-        std::tie(n, enclosed) = open_points(n, kEnclosureReach * site.texel_size, key, w);
+        n = open_points(n, kEnclosureReach * site.texel_size, key, w);
     }
 
     // Counts that do not fill a whole round of the points leave out others in each texel; blocks of a power of two keep
@@ -499,8 +496,6 @@ void PathIntegrator::gather_texel(const GatherSite& site, Workspace& w, Radiance
         }
     }
     sink.store(out, index);
-    // Nobody sees a texel that is shut in and dark, but its neighbours are blended with it: it takes their light.
-    if (enclosed && sink.is_dark()) out.count[index] = 0;
 }
 
 void RadianceSums::reserve(std::size_t texels) {

@@ -12,7 +12,6 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "light/light_set.h"
@@ -104,12 +103,12 @@ private:
     template <class Sink>
     void trace_paths(std::span<const PathStart> starts, Workspace& workspace, Sink& sink) const;
 
-    std::pair<std::size_t, bool> open_points(std::size_t n, float reach, std::uint32_t key, Workspace& workspace) const;
+    std::size_t open_points(std::size_t n, float reach, std::uint32_t key, Workspace& workspace) const;
 
     Transport transport_;
     PathOptions options_;
     std::uint32_t pairs_per_vertex_;
-    bool any_double_sided_;
+    bool any_double_sided_;  // else no point can be enclosed
 };
 
 // Stage: all texels of a page. `first`, `count`: the range of texels to do (the rest of the sums stay zero); any split

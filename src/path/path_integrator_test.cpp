@@ -6,6 +6,7 @@
 
 #include "path/path_integrator.h"
 #include "path/texel_sink.h"
+#include "support/light_checks.h"
 #include "support/traced_scene.h"
 
 namespace lumel {
@@ -195,6 +196,43 @@ TEST(TexelSink, MeanAndErrorAreThoseOfARatio) {
     // sum (x - mean v)^2 / 3^2 * 4/3, v = 1, 1, 1, 0.
     const double residuals = std::pow(1 - mean, 2) + std::pow(2 - mean, 2) + std::pow(3 - mean, 2) + 4;
     EXPECT_NEAR(sums.variance[0].x, residuals / 9 * 4 / 3, 1e-6);
+}
+
+// The choice of the light changes the noise and nothing else.
+TEST(PathIntegrator, TreeAndPowerAgreeAndTheTreeIsQuieter) {
+    Context context(1);
+    test::SceneBuilder b;
+    const auto white = b.material({0.6f, 0.6f, 0.6f});
+    const auto lamp = b.material({0, 0, 0}, {3, 2, 1});
+    b.object("floor", white, [](Mesh& m) { test::add_quad(m, {-20, 0, 20}, {40, 0, 0}, {0, 0, -40}); });
+    for (int i = 0; i < 30; ++i)
+        b.object("lamp", lamp, [&](Mesh& m) {
+            test::add_quad(m, {static_cast<float>(i) - 15.0f, 1.5f, 0}, {0.3f, 0, 0}, {0, 0, 0.3f});
+        });
+    Light& point = b.light(LightShape::point);
+    point.position = {2.5f, 1.5f, 1.5f};
+    point.intensity = {0.1f, 0.2f, 0.3f};
+    const test::TracedScene traced(b.build(), context);
+    const LightSet by_power(traced.scene, traced.geometry, traced.surfaces, LightSet::Choice::power);
+    const Transport power{traced.scene, traced.geometry, traced.surfaces, by_power, *traced.tracer};
+    PathOptions options;
+    options.bounces = 2;
+    constexpr std::uint32_t kPaths = 16384;
+    const auto moments = [&](const Transport& transport) {
+        test::Moments m;
+        const auto starts = starts_at({0.5f, 1e-3f, 0.2f}, {0, 1, 0}, kPaths);
+        for (std::uint32_t first = 0; first < kPaths; first += kWavefrontLanes)
+            for (const Vec3 i :
+                 gather(transport, options, std::span(starts).subspan(first, kWavefrontLanes)).irradiance)
+                m.add(static_cast<double>(i.x));
+        return m;
+    };
+    const test::Moments tree = moments(traced.transport), reference = moments(power);
+    // Independent samples overstate the error of these stratified ones; 5 standard errors all the same.
+    const double error = std::sqrt((tree.variance() + reference.variance()) / kPaths);
+    EXPECT_NEAR(tree.mean(), reference.mean(), 5.0 * error);
+    EXPECT_LT(error, 0.05 * reference.mean()) << "too noisy to tell anything";
+    EXPECT_LT(tree.variance(), 0.3 * reference.variance());
 }
 
 TEST(TransportOptions, AreThoseOfTheBake) {

@@ -70,13 +70,6 @@ public:
         }
     }
 
-    // No light came, on any path.
-    [[nodiscard]] bool is_dark() const {
-        return std::ranges::all_of(layers_, [](const LayerSums<double>& layer) {
-            return std::ranges::all_of(layer.irradiance, [](double sum) { return sum == 0.0; });
-        });
-    }
-
     // Frostbite's rule on the texel's own luminance.
     [[nodiscard]] bool converged(double relative_error) const {
         if (count_ < 2) return false;
