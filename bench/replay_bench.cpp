@@ -7,12 +7,9 @@
 #include <vector>
 
 #include "bench.h"
-#include "chart/chart_set.h"
+#include "bench_scene.h"
 #include "light/light_set.h"
-#include "load.h"
-#include "lumel/bake.h"
 #include "path/path_integrator.h"
-#include "texel/texel_buffer.h"
 
 namespace lumel::bench {
 namespace {
@@ -76,51 +73,35 @@ struct Options {
 
 void run_replay(const Options& options) {
     Context context(1);
-    LoadedScene loaded = need(load_scene(options.scene, context));
-    Scene& scene = loaded.scene;
-    if (scene.lights.empty() && scene.sky.is_black()) {
-        BakeOptions light;  // the light that the benchmarks use where a scene has none
-        light.sky.color = Vec3{0.7f, 0.9f, 1.3f};
-        light.sun.direction = Vec3{0.4188f, -0.7614f, -0.4949f};
-        light.sun.color = {14.0f, 12.5f, 10.0f};
-        light.sun.illuminance = 1.0;
-        need(apply_lighting(scene, light));
-    }
-    const WorldGeometry geometry = need(flatten(scene, context));
-    const SurfaceReader surfaces(scene, geometry);
-    const LightSet lights(scene, geometry, surfaces);
-    ChartOptions chart_options;
-    const ChartSet charts = need(make_charts(scene, geometry, chart_options, context));
-    const Atlas atlas = need(make_atlas(scene, geometry, charts, chart_options, context));
-    const auto by_page = triangles_by_page(scene, geometry, charts, atlas);
-    const TexelBuffer texels = need(rasterize_page(scene, geometry, charts, atlas, 0, by_page.at(0), context));
-    const auto tracer = need(make_embree_tracer(geometry, surfaces, context));
-    const std::size_t count = std::min<std::size_t>(options.texels, texels.size());
-    const std::size_t first = (texels.size() - count) / 2;
+    const BenchScene bench(options.scene, {}, context);
+    const LightSet lights(bench.scene, bench.geometry, bench.surfaces);
+    const TexelBuffer& texels = bench.texels;
+    const TexelRange range = bench.middle_texels(options.texels);
     PathOptions path;
     path.samples = options.samples;
-    path.ao_distance = 0.1f * length(geometry.bounds_max - geometry.bounds_min);
+    path.ao_distance = bench.ao_distance();
 
     const auto gather = [&](const Tracer& with) {
-        const PathIntegrator integrator({scene, geometry, surfaces, lights, with}, path);
+        const PathIntegrator integrator({bench.scene, bench.geometry, bench.surfaces, lights, with}, path);
         const auto workspace = integrator.make_workspace();
         RadianceSums sums;
-        sums.resize(count);
+        sums.resize(range.count);
         std::array<SamplePoint, kSamplesPerTexel> points;
-        for (std::size_t i = 0; i < count; ++i) {
-            const std::size_t texel = first + i;
-            const std::uint32_t n = sample_points(texels, texel, scene, geometry, charts, atlas, points);
+        for (std::size_t i = 0; i < range.count; ++i) {
+            const std::size_t texel = range.first + i;
+            const std::uint32_t n =
+                sample_points(texels, texel, bench.scene, bench.geometry, bench.charts, bench.atlas, points);
             const std::uint64_t id = std::uint64_t{texels.y[texel]} << 16 | texels.x[texel];
             integrator.gather_texel({std::span(points).first(n), id, texels.world_size[texel]}, *workspace, sums, i,
                                     context);
         }
     };
-    const RecordingTracer recorder(*tracer);
+    const RecordingTracer recorder(*bench.tracer);
     gather(recorder);
     double bake = 1e30, replay = 1e30;
     for (int i = 0; i < options.repeats; ++i) {  // by turns: the machine's other work hits both alike
         const CpuStopwatch bake_time;
-        gather(*tracer);
+        gather(*bench.tracer);
         bake = std::min(bake, bake_time.seconds());
         const CpuStopwatch replay_time;
         recorder.replay();
@@ -129,7 +110,7 @@ void run_replay(const Options& options) {
     const double rays = static_cast<double>(recorder.ray_count());
     std::printf(
         "scene,texels,samples,rays,rays_per_batch,bake_mrays_per_cpu_second,replay_mrays_per_cpu_second,share\n");
-    std::printf("%s,%zu,%u,%zu,%.1f,%.3f,%.3f,%.3f\n", base_name(options.scene).c_str(), count, options.samples,
+    std::printf("%s,%zu,%u,%zu,%.1f,%.3f,%.3f,%.3f\n", bench.name.c_str(), range.count, options.samples,
                 recorder.ray_count(), rays / static_cast<double>(recorder.batch_count()), 1e-6 * rays / bake,
                 1e-6 * rays / replay, replay / bake);
 }

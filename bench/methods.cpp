@@ -1,0 +1,81 @@
+#include "methods.h"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+#include "base/parallel.h"
+#include "flux_integrator.h"
+#include "load.h"
+
+namespace lumel::bench {
+namespace {
+
+using Choice = LightSet::Choice;
+
+Transport transport_through(const BenchScene& bench, const LightSet& lights) {
+    return {bench.scene, bench.geometry, bench.surfaces, lights, *bench.tracer};
+}
+
+template <Choice choice>
+RadianceSums brute_force(const GatherJob& job) {
+    const BenchScene& b = job.bench;
+    const LightSet lights(b.scene, b.geometry, b.surfaces, choice);
+    return need(gather_page(b.texels, b.charts, b.atlas, transport_through(b, lights), job.path, job.range.first,
+                            job.range.count, job.context));
+}
+
+RadianceSums flux_with(const GatherJob& job, const FluxChoices& choices, Choice choice) {
+    const BenchScene& b = job.bench;
+    const LightSet lights(b.scene, b.geometry, b.surfaces, choice);
+    const FluxIntegrator integrator(transport_through(b, lights), job.path, choices);
+    std::vector<FluxIntegrator::WorkspacePtr> workspaces(job.context.threads());
+    for (auto& workspace : workspaces) workspace = integrator.make_workspace();
+    RadianceSums sums;
+    sums.resize(b.texels.size());
+    const bool done = parallel_for(job.context, job.range.count, 16, [&](const ChunkRange& chunk) {
+        std::array<SamplePoint, kSamplesPerTexel> points;
+        for (std::size_t i = job.range.first + chunk.begin; i < job.range.first + chunk.end; ++i) {
+            const std::uint32_t n = sample_points(b.texels, i, b.scene, b.geometry, b.charts, b.atlas, points);
+            const std::uint64_t id = (std::uint64_t{b.texels.y[i]} << 16) | b.texels.x[i];
+            integrator.gather_texel({std::span(points).first(n), id, b.texels.world_size[i]}, *workspaces[chunk.worker],
+                                    sums, i);
+        }
+    });
+    if (!done) throw std::runtime_error("cancelled");
+    return sums;
+}
+
+RadianceSums flux_uniform(const GatherJob& job) { return flux_with(job, {}, Choice::power); }
+
+RadianceSums flux_all(const GatherJob& job) {
+    FluxChoices choices;
+    choices.next_event = FluxChoices::NextEvent::all_lights;
+    return flux_with(job, choices, Choice::power);
+}
+
+template <Choice choice>
+RadianceSums flux_as_lumel(const GatherJob& job) {
+    return flux_with(job, kLumelsChoices, choice);
+}
+
+constexpr Method kMethods[] = {
+    {"flux-uniform", "Frostbite's path tracer, one uniformly chosen light at each hit", true, flux_uniform},
+    {"flux-all", "the same, all lights at each hit", true, flux_all},
+    {"power", "Lumel's brute force, local lights chosen by power", true, brute_force<Choice::power>},
+    {"tree", "Lumel's brute force, local lights chosen by the light tree", true, brute_force<Choice::tree>},
+    {"flux-as-power", "flux with all choices set to those of power: is it a fair one?", false,
+     flux_as_lumel<Choice::power>},
+    {"flux-as-tree", "flux with all choices set to those of tree", false, flux_as_lumel<Choice::tree>},
+};
+
+}  // namespace
+
+std::span<const Method> methods() { return kMethods; }
+
+const Method* find_method(std::string_view name) {
+    const auto* found = std::ranges::find(kMethods, name, &Method::name);
+    return found == std::end(kMethods) ? nullptr : found;
+}
+
+}  // namespace lumel::bench
