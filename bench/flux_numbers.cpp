@@ -38,4 +38,9 @@ float FluxNumbers::one(std::uint32_t vertex) const {
     return rotated(vertex, 2, 0);
 }
 
+float FluxNumbers::roulette(std::uint32_t vertex) const {
+    if (points_ == FluxPoints::sobol) return Sampler(key_, index_).pair(salt_of(vertex, 2, 0)).y;
+    return independent(vertex, 5, 0);
+}
+
 }  // namespace lumel::bench

@@ -43,7 +43,7 @@ public:
     [[nodiscard]] float light_choice(std::uint32_t vertex) const { return one(vertex); }
     // `which`: of several samples at one vertex; each turns the points by another angle.
     [[nodiscard]] Vec2 on_light(std::uint32_t vertex, std::uint32_t which) const { return pair(vertex, 3, which); }
-    [[nodiscard]] float roulette(std::uint32_t vertex) const { return independent(vertex, 5, 0); }
+    [[nodiscard]] float roulette(std::uint32_t vertex) const;
     [[nodiscard]] float origin() const { return independent(0, 6, 0); }
 
 private:

@@ -29,7 +29,7 @@ struct Options {
     ReferenceOptions reference{default_reference_folder()};
     std::string reference_folder, csv, plot, stop = "fixed";
     double error = 0.05, confidence = 0.95;
-    std::uint32_t seed = 1;
+    std::uint32_t seed = 1, runs = 1;
     unsigned threads = 0;
 };
 
@@ -98,19 +98,36 @@ PathOptions path_options(const Options& options, const BenchScene& bench, std::u
     return path;
 }
 
-Row measure(const Method& method, const GatherJob& job, const ReferenceHalf& a, const ReferenceHalf& b) {
+void add(Score& sum, const Score& s, double share) {
+    sum.texels = s.texels;
+    sum.relmse += share * s.relmse;
+    sum.relmse_without_worst += share * s.relmse_without_worst;
+    sum.relmse_sh += share * s.relmse_sh;
+    sum.bias += share * s.bias;
+    sum.block_bias += share * s.block_bias;
+    sum.block_noise += share * s.block_noise;
+    sum.reference_relmse += share * s.reference_relmse;
+}
+
+// The mean of several runs, with one seed after the other.
+Row measure(const Method& method, GatherJob job, std::uint32_t runs, const ReferenceHalf& a, const ReferenceHalf& b) {
     Row row;
     row.scene = job.bench.name;
     row.method = method.name;
     row.samples = job.path.samples;
-    const std::uint64_t rays_before = job.bench.tracer->statistics().rays;
-    const CpuStopwatch stopwatch;
-    const RadianceSums sums = method.gather(job);
-    row.cpu_seconds = stopwatch.seconds();
-    row.rays = job.bench.tracer->statistics().rays - rays_before;
-    for (const std::uint32_t traced : sums.traced) row.mean_samples += traced;
-    row.mean_samples /= static_cast<double>(std::max<std::size_t>(1, job.range.count));
-    row.score = score(sums, a, b, job.bench.texels, job.range);
+    std::uint64_t traced = 0;
+    for (std::uint32_t run = 0; run < runs; ++run, ++job.path.seed) {
+        const std::uint64_t rays_before = job.bench.tracer->statistics().rays;
+        const CpuStopwatch stopwatch;
+        const RadianceSums sums = method.gather(job);
+        row.cpu_seconds += stopwatch.seconds() / runs;
+        row.rays += job.bench.tracer->statistics().rays - rays_before;
+        for (const std::uint32_t t : sums.traced) traced += t;
+        add(row.score, score(sums, a, b, job.bench.texels, job.range), 1.0 / runs);
+    }
+    row.rays /= runs;
+    row.mean_samples =
+        static_cast<double>(traced) / (static_cast<double>(std::max<std::size_t>(1, job.range.count)) * runs);
     return row;
 }
 
@@ -172,7 +189,8 @@ void run_transport(Options options) {
         const ReferenceHalf b = reference_half(*bench, range, 1, options.reference, context);
         for (const Method* method : chosen)
             for (const std::uint32_t samples : options.samples) {
-                Row row = measure(*method, {*bench, path_options(options, *bench, samples), range, context}, a, b);
+                Row row = measure(*method, {*bench, path_options(options, *bench, samples), range, context},
+                                  options.runs, a, b);
                 rows.push_back(row);
                 csv.line(csv_row(row, *bench, efficiency_over_flux(row, rows), std::min(a.samples, b.samples)));
             }
@@ -205,6 +223,8 @@ void add_transport(CLI::App& app) {
     command->add_option("--texel-budget", o->texel_budget, "Texels of other scenes")->check(CLI::Range(100.0, 1e7));
     command->add_option("--texels", o->texels, "At most so many, from the middle of page 0; 0: all of it");
     command->add_option("--seed", o->seed, "Of the methods");
+    command->add_option("--runs", o->runs, "Figures are means over so many runs, with one seed after the other")
+        ->check(CLI::Range(1u, 1000u));
     command
         ->add_option("--stop", o->stop, "fixed, or flux: a texel stops by its own standard error, where a method can")
         ->check(CLI::IsMember({"fixed", "flux"}));
