@@ -13,7 +13,7 @@ namespace lumel::bench {
 namespace {
 
 constexpr std::uint32_t kPanelWidth = 720, kPanelHeight = 540;
-constexpr float kLeft = 84, kRight = 24, kTop = 44, kBottom = 60;  // margins of the frame in its panel
+constexpr float kLeft = 112, kRight = 24, kTop = 44, kBottom = 60;  // margins of the frame in its panel
 constexpr float kTextScale = 2.0f;
 constexpr Vec3 kInk{0.15f, 0.15f, 0.17f}, kGrid{0.88f, 0.88f, 0.90f};
 
@@ -102,7 +102,7 @@ float text_length(const std::string& words) { return kTextScale * text_width(wor
 
 std::string tick_label(double value) {
     char text[32];
-    std::snprintf(text, sizeof text, value >= 0.01 && value < 1e4 ? "%g" : "%.0e", value);
+    std::snprintf(text, sizeof text, value > 0.9e-3 && value < 1e4 ? "%g" : "%.0e", value);
     return text;
 }
 

@@ -41,7 +41,7 @@ bool is_colored(const Image& image, double x, double y) {
 TEST(Plot, PointsAreWhereTheirLogarithmsAre) {
     const Image image =
         draw_plot({{"title", "x", "y", {{"line", {{1.0, 100.0}, {0.0, 50.0}, {100.0, 1.0}, {-1.0, 5.0}}}}}});
-    const double left = 84, right = image.width - 24.0, top = 44, bottom = image.height - 60.0;
+    const double left = 112, right = image.width - 24.0, top = 44, bottom = image.height - 60.0;
     EXPECT_TRUE(is_colored(image, left, top));
     EXPECT_TRUE(is_colored(image, right, bottom));
     EXPECT_TRUE(is_colored(image, 0.5 * (left + right), 0.5 * (top + bottom)));
