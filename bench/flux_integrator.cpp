@@ -16,7 +16,6 @@ namespace {
 
 constexpr std::uint32_t kRouletteFrom = 3;
 constexpr float kShadowShortening = 1.0f - 1e-4f;             // of shadow rays to finite lights
-constexpr float kEnclosureReach = 8.0f;                       // texels: the origins are Lumel's
 constexpr std::uint32_t kSkySample = 1, kFirstSunSample = 2;  // FluxNumbers::on_light; 0 is the local light
 
 float power_heuristic(float pdf, float other) {
@@ -226,7 +225,7 @@ void FluxIntegrator::meet_lights(std::uint32_t lane, std::uint32_t vertex, const
             if (set.samples_sun(sun)) arrive(Layer::direct, set.sun(sun, path.direction, bounced));
     } else {
         arrive(Layer::direct,
-               set.emissive(receiver, hit.triangle, hit.b1, hit.b2, path.direction, hit.t, hit.back_face));
+               set.emissive(receiver, hit.triangle, hit.b1, hit.b2, path.direction, hit.t, hit.back_face, bounced));
     }
 }
 
@@ -305,25 +304,18 @@ void FluxIntegrator::trace_paths(std::size_t count, Workspace& w, TexelSink& sin
 }
 
 // As Lumel finds them: lifted, and without those that are shut in unless all are.
-FluxIntegrator::Origins FluxIntegrator::find_origins(const GatherSite& site, std::uint32_t key, Workspace& w) const {
+std::size_t FluxIntegrator::find_origins(const GatherSite& site, std::uint32_t key, Workspace& w) const {
     const std::size_t n = site.points.size();
     lumel_.surface_starts(site.points, std::span(w.sides).first(n), *w.lumel, w.origins);
-    if (!any_double_sided_) return {n, false};
-    const std::uint64_t enclosed = enclosed_points(std::span(w.origins).first(n), kEnclosureReach * site.texel_size,
-                                                   mix32(key), transport_.tracer, w.rays, w.hits);
-    const auto shut = static_cast<std::size_t>(std::popcount(enclosed));
-    if (shut == 0 || shut == n) return {n, shut == n};
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < n; ++i)
-        if ((enclosed >> i & 1u) == 0) w.origins[kept++] = w.origins[i];
-    return {kept, false};
+    if (!any_double_sided_) return n;
+    return keep_open_points(std::span(w.origins).first(n), site.texel_size, key, transport_, w.rays, w.hits);
 }
 
 void FluxIntegrator::gather_texel(const GatherSite& site, Workspace& w, RadianceSums& out, std::size_t index) const {
     LUMEL_CHECK(!site.points.empty() && site.points.size() <= kSamplesPerTexel && !options_.two_sided,
                 site.points.size());
     const std::uint32_t key = sampler_key(options_.seed, site.id);
-    const auto [count, enclosed] = find_origins(site, key, w);
+    const std::size_t count = find_origins(site, key, w);
     TexelSink sink(options_);
     const bool may_stop = options_.stop == StopRule::flux;
     const std::uint32_t step = may_stop ? (options_.samples + 9) / 10 : options_.samples;
@@ -347,7 +339,6 @@ void FluxIntegrator::gather_texel(const GatherSite& site, Workspace& w, Radiance
         next_check += step;
     }
     sink.store(out, index);
-    if (enclosed && sink.is_dark()) out.count[index] = 0;
 }
 
 }  // namespace lumel::bench

@@ -61,11 +61,7 @@ public:
     void gather_texel(const GatherSite& site, Workspace& workspace, RadianceSums& out, std::size_t index) const;
 
 private:
-    struct Origins {
-        std::size_t count;
-        bool enclosed;
-    };
-    Origins find_origins(const GatherSite& site, std::uint32_t key, Workspace& w) const;
+    std::size_t find_origins(const GatherSite& site, std::uint32_t key, Workspace& w) const;
     void trace_paths(std::size_t count, Workspace& w, TexelSink& sink) const;
     void start_paths(std::size_t count, Workspace& w) const;
     std::size_t drop_void_paths(std::size_t count, Workspace& w, TexelSink& sink) const;

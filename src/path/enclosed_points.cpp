@@ -1,6 +1,7 @@
 #include "path/enclosed_points.h"
 
 #include <array>
+#include <bit>
 
 #include "base/check.h"
 #include "math/frame.h"
@@ -42,6 +43,18 @@ std::uint64_t enclosed_points(std::span<const SurfaceStart> starts, float reach,
     std::uint64_t enclosed = 0;
     for (std::size_t i = 0; i < count; ++i) enclosed |= std::uint64_t{1} << suspects[i];
     return enclosed;
+}
+
+std::size_t keep_open_points(std::span<SurfaceStart> starts, float texel_size, std::uint32_t key,
+                             const Transport& transport, std::span<Ray> rays, std::span<Hit> hits) {
+    const std::uint64_t enclosed = enclosed_points(starts, kEnclosureReach * texel_size, mix32(key), transport.tracer,
+                                                   transport.geometry, rays, hits);
+    const auto shut = static_cast<std::size_t>(std::popcount(enclosed));
+    if (shut == 0 || shut == starts.size()) return starts.size();
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < starts.size(); ++i)
+        if ((enclosed >> i & 1u) == 0) starts[kept++] = starts[i];
+    return kept;
 }
 
 }  // namespace lumel

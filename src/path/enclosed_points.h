@@ -23,4 +23,13 @@ std::uint64_t enclosed_points(std::span<const SurfaceStart> starts, float reach,
                               const Tracer& tracer, const WorldGeometry& geometry, std::span<Ray> rays,
                               std::span<Hit> hits);
 
+// In texels, what counts as near. Cavities under what stands on a texel are not much wider than what hides them; rooms
+// whose walls face outwards are, and the things in such rooms are not enclosed.
+inline constexpr float kEnclosureReach = 8.0f;
+
+// Moves the points of a texel that are not enclosed to the front and returns how many there are; all, in place, where
+// all are. `key`: of the texel's point set.
+std::size_t keep_open_points(std::span<SurfaceStart> starts, float texel_size, std::uint32_t key,
+                             const Transport& transport, std::span<Ray> rays, std::span<Hit> hits);
+
 }  // namespace lumel

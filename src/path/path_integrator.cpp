@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 
 #include "base/check.h"
@@ -30,9 +29,6 @@ enum Pair : std::uint32_t { kDirectionPair, kSkyPair, kLocalPair, kChoicePair, k
 
 constexpr std::uint32_t kRouletteFrom = 3;             // the first vertex after which a path may be ended by chance
 constexpr std::uint32_t kDirectionSalt = 0x51ed270bu;  // of the alpha keys of sampled directions
-// In texels. Cavities under what stands on a texel are not much wider than what hides them; rooms whose walls face
-// outwards are, and the things in such rooms are not enclosed.
-constexpr float kEnclosureReach = 8.0f;
 constexpr float kShadowShortening = 1.0f - 1e-4f;  // of shadow rays to finite lights, against hitting the light itself
 
 float power_heuristic(float pdf, float other_pdf) {
@@ -438,18 +434,6 @@ void PathIntegrator::gather_irradiance(std::span<const PathStart> starts, Worksp
     trace_paths(starts, workspace, sink);
 }
 
-// Leaves out the enclosed points, unless all are; returns how many remain.
-std::size_t PathIntegrator::open_points(std::size_t n, float reach, std::uint32_t key, Workspace& w) const {
-    const std::uint64_t enclosed = enclosed_points(std::span(w.surfaces).first(n), reach, mix32(key), transport_.tracer,
-                                                   transport_.geometry, w.rays, w.hits);
-    const auto shut = static_cast<std::size_t>(std::popcount(enclosed));
-    if (shut == 0 || shut == n) return n;
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < n; ++i)
-        if ((enclosed >> i & 1u) == 0) w.surfaces[kept++] = w.surfaces[i];
-    return kept;
-}
-
 void PathIntegrator::gather_texel(const GatherSite& site, Workspace& w, RadianceSums& out, std::size_t index,
                                   const Context& context) const {
     const std::span<const SamplePoint> points = site.points;
@@ -465,7 +449,7 @@ void PathIntegrator::gather_texel(const GatherSite& site, Workspace& w, Radiance
         std::fill(w.sides.begin(), w.sides.end(), std::uint8_t{1});
         surface_starts(points, std::span(w.sides).first(n), w, w.back_surfaces);
     } else if (any_double_sided_) {
-        n = open_points(n, kEnclosureReach * site.texel_size, key, w);
+        n = keep_open_points(std::span(w.surfaces).first(n), site.texel_size, key, transport_, w.rays, w.hits);
     }
 
     // Counts that do not fill a whole round of the points leave out others in each texel; blocks of a power of two keep

@@ -103,8 +103,6 @@ private:
     template <class Sink>
     void trace_paths(std::span<const PathStart> starts, Workspace& workspace, Sink& sink) const;
 
-    std::size_t open_points(std::size_t n, float reach, std::uint32_t key, Workspace& workspace) const;
-
     Transport transport_;
     PathOptions options_;
     std::uint32_t pairs_per_vertex_;
