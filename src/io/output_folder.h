@@ -1,6 +1,7 @@
 // The output folder, whole or not at all: files are written into a sibling of it and moved into place at the end.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -8,12 +9,32 @@
 
 namespace lumel {
 
+// An exclusive lock on a folder that ends with the process, however it ends: process ids come back, in containers at
+// once. It goes with the folder when that is renamed. On network file systems it is of this host only.
+class FolderLock {
+public:
+    FolderLock() = default;
+    ~FolderLock();
+    FolderLock(FolderLock&& other) noexcept;
+    FolderLock& operator=(FolderLock&& other) noexcept;
+
+    enum class State : std::uint8_t { held, taken, unsupported };
+    State acquire(const std::filesystem::path& folder);  // does not wait
+    // Is the locked folder still the one of this path?
+    [[nodiscard]] bool is_of(const std::filesystem::path& folder) const;
+    void release() noexcept;
+
+private:
+    int folder_ = -1;
+};
+
 class OutputFolder {
 public:
-    // Makes `<target>.partial-<process id>` beside the target, and parents as needed. What killed processes left is
-    // put right first: their partial folders go, and a bake that one of them was about to replace comes back. Errors
-    // where the target is no folder, cannot be written to, or holds files of our names that no bake wrote: before hours
-    // of work, not after.
+    // Makes `<target>.partial-<number>` beside the target, and parents as needed; the number is the process id where
+    // that is free. The folder is locked while this lives: one without a lock is what a killed process left. What
+    // killed processes left is put right first: their partial folders go, and a bake that one of them was about to
+    // replace comes back. Errors where the target is no folder, cannot be written to, or holds files of our names that
+    // no bake wrote: before hours of work, not after.
     static Result<OutputFolder> create(const std::filesystem::path& target);
 
     // Without commit() the partial folder goes, and with it all that is in it.
@@ -32,11 +53,13 @@ public:
     Status commit();
 
 private:
-    OutputFolder(std::filesystem::path target, std::filesystem::path partial);
+    OutputFolder(std::filesystem::path target, std::filesystem::path partial, std::string number, FolderLock lock);
     void discard() noexcept;
     Status replace_files();
 
     std::filesystem::path target_, partial_;  // partial_ is empty once moved from or committed
+    std::string number_;
+    FolderLock lock_;
 };
 
 // Is this the name of a file that a bake writes?

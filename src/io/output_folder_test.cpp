@@ -1,16 +1,51 @@
 #include "io/output_folder.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
+#include <cerrno>
 #include <fstream>
+#include <functional>
+#include <limits>
 #include <set>
-#include <vector>
 
 #include "support/temporary_folder.h"
 
 namespace lumel {
+namespace {
+
+// ---- A process that dies, or whose disk fails, after some steps -----------------------------------------------------
+
+constexpr int kNever = std::numeric_limits<int>::max();
+constexpr int kDied = 77;
+int steps_left = kNever;
+bool fails_then = false;  // every step from there on, instead of dying
+
+// False: the step fails.
+bool may_step() {
+    if (steps_left == kNever || steps_left-- > 0) return true;
+    if (!fails_then) ::_exit(kDied);
+    steps_left = 0;
+    errno = EIO;
+    return false;
+}
+
+}  // namespace
+
+// The standard library renames and removes by these, which stand before those of the C library here.
+extern "C" {
+[[gnu::visibility("default")]] int rename(const char* from, const char* to) noexcept {
+    return may_step() ? ::renameat(AT_FDCWD, from, AT_FDCWD, to) : -1;
+}
+[[gnu::visibility("default")]] int remove(const char* path) noexcept {
+    if (!may_step()) return -1;
+    if (::unlink(path) == 0) return 0;
+    return errno == EISDIR || errno == EPERM ? ::rmdir(path) : -1;
+}
+}
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -118,61 +153,105 @@ TEST(OutputFolder, AFileInThePlaceOfTheFolderIsAnErrorAtOnce) {
     EXPECT_EQ(folder.entries(), 1u);
 }
 
+// Whatever the number says: in containers it is that of a living process again.
 TEST(OutputFolder, WhatAKilledProcessLeftIsRemoved) {
     const TemporaryFolder folder;
-    // Process ids end far below this.
-    fs::create_directory(folder / "out.partial-2000000000");
+    for (const long process : {2000000000L, long{::getppid()}, long{::getpid()}, 1L})
+        fs::create_directory(folder / ("out.partial-" + std::to_string(process)));
     fs::create_directory(folder / "out.partial-mine");
-    // The parent process is alive: its folder stays.
-    const std::string alive = "out.partial-" + std::to_string(::getppid());
-    fs::create_directory(folder / alive);
     auto output = OutputFolder::create(folder / "out");
     ASSERT_TRUE(output.ok());
     ASSERT_TRUE(output->commit().ok());
-    EXPECT_EQ(names_in(folder.path()), (Names{"out", "out.partial-mine", alive}));
+    EXPECT_EQ(names_in(folder.path()), (Names{"out", "out.partial-mine"}));
 }
 
-// A bake that is killed after any number of its moves: the next one finds the older bake or the newer, whole, with the
-// user's own files, and nothing beside it. The moves are those of commit(), made here one by one.
-TEST(OutputFolder, ABakeKilledWhileItReplacesIsPutRight) {
-    const Names old_names{"manifest.json", "scene.glb", "lightmap_0.exr", "lightmap_1.exr"};
-    const Names new_names{"manifest.json", "scene.glb", "lightmap_0.exr", "preview_view_0.png"};
-    const std::string process = "-2000000000";  // process ids end far below this
-    std::vector<std::array<std::string, 2>> moves;
-    const auto leave = [&](const std::string& name) {
-        moves.push_back({"out/" + name, "out.leaving" + process + "/" + name});
-    };
-    const auto enter = [&](const std::string& name) {
-        moves.push_back({"out.partial" + process + "/" + name, "out/" + name});
-    };
-    leave("manifest.json");
-    for (const std::string& name : old_names)
-        if (name != "manifest.json") leave(name);
-    moves.push_back({"out.leaving" + process, "out.replaced" + process});
-    for (const std::string& name : new_names)
-        if (name != "manifest.json") enter(name);
-    enter("manifest.json");
+TEST(OutputFolder, WhatALivingOneWritesStays) {
+    const TemporaryFolder folder;
+    auto first = OutputFolder::create(folder / "out");
+    ASSERT_TRUE(first.ok());
+    put(first->path() / "manifest.json", kOldManifest);
+    auto second = OutputFolder::create(folder / "out");
+    ASSERT_TRUE(second.ok());
+    EXPECT_NE(first->path(), second->path());
+    ASSERT_TRUE(first->commit().ok());
+    EXPECT_EQ(text_of(folder / "out/manifest.json"), kOldManifest);
+    put(second->path() / "manifest.json", "second");
+    ASSERT_TRUE(second->commit().ok());
+    EXPECT_EQ(text_of(folder / "out/manifest.json"), "second");
+    EXPECT_EQ(folder.entries(), 1u);
+}
 
-    for (std::size_t done = 0; done <= moves.size(); ++done) {
-        const TemporaryFolder folder;
-        for (const char* name : {"out", "out.leaving", "out.partial"})
-            fs::create_directory(folder / (name + (std::string(name) == "out" ? "" : process)));
-        for (const std::string& name : old_names) put(folder / "out" / name, kOldManifest);
-        put(folder / "out/notes.txt", "foreign");
-        const std::string fresh = R"({ "version": 1, "generator": "Lumel", "new": true })";
-        for (const std::string& name : new_names) put(folder / ("out.partial" + process) / name, fresh);
-        for (std::size_t k = 0; k < done; ++k) fs::rename(folder / moves[k][0], folder / moves[k][1]);
-        {
-            const auto next = OutputFolder::create(folder / "out");
-            ASSERT_TRUE(next.ok()) << done << ": " << next.error().text();
+const Names kOldNames{"manifest.json", "scene.glb", "lightmap_0.exr", "lightmap_1.exr"};
+const Names kNewNames{"manifest.json", "scene.glb", "lightmap_0.exr", "preview_view_0.png"};
+constexpr const char* kNewManifest = R"({ "version": 1, "generator": "Lumel", "new": true })";
+
+// Does something in a process of its own that is stopped after so many steps. True: it came to its end before that.
+bool in_a_process(int steps, bool fails, const std::function<void()>& work) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+        steps_left = steps;
+        fails_then = fails;
+        work();
+        ::_exit(steps_left == 0 && fails ? kDied : 0);
+    }
+    int status = 0;
+    EXPECT_EQ(::waitpid(child, &status, 0), child);
+    EXPECT_TRUE(WIFEXITED(status) && (WEXITSTATUS(status) == 0 || WEXITSTATUS(status) == kDied)) << status;
+    return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+// Bakes over an older bake, stopped after so many steps of commit().
+bool replace(const fs::path& out, int steps, bool fails) {
+    fs::create_directory(out);
+    for (const std::string& name : kOldNames) put(out / name, kOldManifest);
+    put(out / "notes.txt", "foreign");
+    return in_a_process(kNever, false, [&] {
+        auto output = OutputFolder::create(out);
+        if (!output.ok()) ::_exit(1);
+        for (const std::string& name : kNewNames) put(output->path() / name, kNewManifest);
+        steps_left = steps;
+        fails_then = fails;
+        (void)output->commit();
+        ::_exit(steps_left < 0 || (steps_left == 0 && fails) ? kDied : 0);
+    });
+}
+
+void expect_whole(const TemporaryFolder& folder, bool newer, const std::string& what) {
+    Names expected = newer ? kNewNames : kOldNames;
+    for (const std::string& name : expected)
+        EXPECT_EQ(text_of(folder / "out" / name), newer ? kNewManifest : kOldManifest) << what << " " << name;
+    expected.insert("notes.txt");
+    EXPECT_EQ(names_in(folder / "out"), expected) << what;
+    EXPECT_EQ(folder.entries(), 1u) << what;
+}
+
+// A bake that is stopped after any number of steps of its commit(), and the next one after any number of steps of
+// putting that right: the one after finds the older bake or the newer, whole, with the user's own files, and nothing
+// beside it. Stopped: killed, or no file can be moved any more.
+TEST(OutputFolder, ABakeStoppedWhileItReplacesIsPutRight) {
+    for (const bool fails : {false, true}) {
+        int steps = 0, stopped_recoveries = 0;
+        for (bool committed = false; !committed; ++steps) {
+            bool recovered = false;
+            for (int recovery = 0; !recovered; ++recovery) {
+                const TemporaryFolder folder;
+                committed = replace(folder / "out", steps, fails);
+                const bool newer = text_of(folder / "out/manifest.json") == kNewManifest;
+                const auto recover = [&] { (void)OutputFolder::create(folder / "out"); };
+                recovered = in_a_process(recovery, fails, recover);
+                stopped_recoveries += recovered ? 0 : 1;
+                const std::string what = std::to_string(steps) + ", then " + std::to_string(recovery) + " steps";
+                {
+                    const auto next = OutputFolder::create(folder / "out");
+                    ASSERT_TRUE(next.ok()) << what << ": " << next.error().text();
+                }
+                expect_whole(folder, newer, what);
+                ASSERT_LT(recovery, 100) << "steps are not seen";
+            }
+            ASSERT_LT(steps, 100) << "steps are not seen";
         }
-        const bool newer = done == moves.size();
-        Names expected = newer ? new_names : old_names;
-        for (const std::string& name : expected)
-            EXPECT_EQ(text_of(folder / "out" / name), newer ? fresh : kOldManifest) << done << " " << name;
-        expected.insert("notes.txt");
-        EXPECT_EQ(names_in(folder / "out"), expected) << done;
-        EXPECT_EQ(folder.entries(), 1u) << done;
+        EXPECT_GT(steps, 9) << "there are nine moves";
+        EXPECT_GT(stopped_recoveries, 30) << "steps are not seen";
     }
 }
 
