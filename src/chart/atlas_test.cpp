@@ -484,6 +484,20 @@ TEST(KeptLayout, ChartsThatGoOnInEachOtherDoNotBleed) {
     EXPECT_EQ(context.diagnostics.count("uv-bleeding"), 64u);
 }
 
+// A sliver of the surface may have no area in the layout: it lies on a line of another chart, and bleeds nothing.
+TEST(KeptLayout, CollapsedTrianglesDoNotBleed) {
+    Mesh sliver = test::flat_grid(1, 0.04f);  // 0.04 % of the floor: fewer than the thousandth that is let pass
+    for (const Vec3 p : sliver.positions) sliver.uv1.push_back({0.2f + 2.5f * p.x, 0.5f});
+    LevelBuilder b;
+    b.instance(b.mesh(joined(floor_with_uv1({0, 0}, {1, 1}), sliver, {0.4f, 0, -1})));
+    const Level level = b.build();
+    Context context(1);
+    const Layout l = layout(level, square_page(32), context);
+    EXPECT_TRUE(l.charts.scene_wide);
+    EXPECT_EQ(l.charts.meshes[0].charts.size(), 2u);
+    EXPECT_EQ(context.diagnostics.count("uv-bleeding"), 0u);
+}
+
 // Two islands of one mesh on top of each other, under each policy.
 TEST(KeptLayout, OverlapsInsideAMesh) {
     LevelBuilder b;

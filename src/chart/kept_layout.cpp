@@ -9,24 +9,30 @@
 
 #include "chart/chart_mask.h"
 #include "chart/mesh_charts.h"
+#include "chart/overlap.h"
+#include "chart/uv1.h"
 #include "chart/where.h"
 
 namespace lumel {
 namespace {
 
 // Calls visit(instance, mesh triangle, x, y) for every texel of the page that a chart of a lightmap instance can touch,
-// chart by chart; a texel as often as triangles of the chart touch it.
+// chart by chart; a texel as often as triangles of the chart touch it. Triangles that the layout collapsed are left
+// out: they have no light there that could be read.
 template <class Visit>
 void for_each_texel(const Scene& scene, const ChartSet& charts, AtlasPage page, const Visit& visit) {
+    const double floor = uv1_tolerance().floor;
     const TexelMap map{double(page.width), double(page.height), 0.0, 0.0};
     for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
         if (scene.instances[i].node_class != NodeClass::lightmap) continue;
         const MeshCharts& mesh = charts.meshes[scene.instances[i].mesh];
-        for (const std::uint32_t t : mesh.order)
+        for (const std::uint32_t t : mesh.order) {
+            if (uv_altitude(mesh.uv[t]) <= floor) continue;
             for_each_mask_span(mesh.uv[t], map, page.width, page.height,
                                [&](std::uint32_t y, std::uint32_t x0, std::uint32_t x1) {
                                    for (std::uint32_t x = x0; x < x1; ++x) visit(i, t, x, y);
                                });
+        }
     }
 }
 
