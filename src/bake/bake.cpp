@@ -57,8 +57,6 @@ PathOptions path_options(const BakeOptions& options, const WorldGeometry& geomet
 
 constexpr std::uint32_t kSmallestPage = 256;
 
-std::string megabytes(std::uint64_t bytes) { return std::to_string((bytes + (1u << 20) - 1) >> 20) + " MB"; }
-
 // The largest page edge, of halves of `edge`, whose full page would fit; at least the smallest.
 std::uint32_t edge_that_fits(std::uint32_t edge, std::uint64_t memory, unsigned threads) {
     while (edge > kSmallestPage && page_memory({edge, edge}, threads) > memory) edge /= 2;
@@ -84,8 +82,8 @@ Result<Atlas> make_atlas_within_memory(const Scene& scene, const WorldGeometry& 
     const std::string remedy = one_page ? "raise --max-memory, or lower --resolution: a single page cannot be split"
                                         : "raise --max-memory, or lower --texels-per-metre or --threads";
     return Error{ErrorCode::out_of_memory,
-                 "this bake needs " + megabytes(report.predicted_memory_bytes) + " but --max-memory allows " +
-                     std::to_string(max_memory >> 20) + " MB",
+                 "this bake is predicted to need about " + megabytes(report.predicted_memory_bytes) +
+                     " but --max-memory allows " + std::to_string(max_memory >> 20) + " MB",
                  scene.source, remedy};
 }
 

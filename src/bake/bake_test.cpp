@@ -188,8 +188,8 @@ BakeSink no_sink() {
 
 // The megabytes that an error says are needed; 0 where it says none.
 std::uint64_t megabytes_needed(const Error& error) {
-    const std::size_t at = error.message.find("needs ");
-    return at == std::string::npos ? 0 : std::strtoull(error.message.c_str() + at + 6, nullptr, 10);
+    const std::size_t at = error.message.find("need about ");
+    return at == std::string::npos ? 0 : std::strtoull(error.message.c_str() + at + 11, nullptr, 10);
 }
 
 TEST(Bake, TooLittleMemoryIsAnErrorThatSaysHowMuchIsNeeded) {

@@ -2,13 +2,19 @@
 
 #include <algorithm>
 
+#include "encode/output_sizes.h"
+#include "light/emissive.h"
 #include "path/radiance_sums.h"
 
 namespace lumel {
 namespace {
 
-// Measured with Embree 3.13 and 4.3 at build quality high: 150 to 190 bytes a triangle at the peak of the build.
-constexpr std::uint64_t kTracerBytesPerTriangle = 200;
+// Measured with Embree 3.13 at build quality high, at the peak of the build: 111 bytes a triangle for Sponza (262,000),
+// 112 for a rolling field and 116 for a cloud of small triangles (500,000 each). Our list of triangles comes on top,
+// and a copy of the positions.
+constexpr std::uint64_t kTracerBytesPerTriangle = 130, kTracerBytesPerVertex = sizeof(Vec3);
+// Of an emissive triangle: two nodes of the light tree, and what they are made of; its place among the lights.
+constexpr std::uint64_t kLightBytesPerTriangle = 2 * 100 + sizeof(LightBounds) + 12;
 constexpr std::uint64_t kProgramBytes = 64u << 20;  // code, libraries, allocator slack
 
 // One texel of a page that is covered all over, which is the most there is: dilated texels take no more than covered
@@ -23,14 +29,11 @@ constexpr std::uint64_t kBytesPerPixel = 3 * sizeof(std::uint32_t);  // texel_at
 
 // Rows of the master, the widest file, on one thread: a block, and two chunks that OpenEXR compresses, each with what
 // went in, what comes out and room to sort the bytes in.
-constexpr std::uint64_t kRowsPerThread = 16;
 constexpr std::uint64_t kMasterPixelBytes = sizeof(float) * (kLayerCount * (3 * kShCoefficients + 3) + 5);
 constexpr std::uint64_t kCopiesOfRows = 1 + 2 * 3;
 
-// Of a page, once it is written, there stay: previews of at most this edge (irradiance, count, coverage), and the
-// picture for scene.glb, which noise does not let compress by much.
-constexpr std::uint64_t kPreviewEdge = 1024;
-constexpr std::uint64_t kPreviewBytes = 4 * sizeof(float) + 1;
+// Of a page, once it is written, there stay: previews, and the picture for scene.glb, which noise does not let compress
+// by much.
 constexpr std::uint64_t kPictureBytes = 3;
 
 // Both atlases, and packing.
@@ -44,7 +47,7 @@ constexpr std::uint64_t kBakedTriangleBytes = 28;  // of the views
 std::uint64_t pixels_of(const AtlasPage& page) { return std::uint64_t{page.width} * page.height; }
 
 std::uint64_t preview_pixels(const AtlasPage& page) {
-    const std::uint64_t block = (std::max(page.width, page.height) + kPreviewEdge - 1) / kPreviewEdge;
+    const std::uint64_t block = preview_block(page.width, page.height, kPreviewEdge);
     return pixels_of(page) / (block * block);
 }
 
@@ -56,18 +59,21 @@ std::uint64_t picture_memory(const Atlas& atlas) {
 
 std::uint64_t preview_memory(const Atlas& atlas) {
     std::uint64_t bytes = 0;
-    for (const AtlasPage& page : atlas.pages) bytes += preview_pixels(page) * kPreviewBytes;
+    for (const AtlasPage& page : atlas.pages) bytes += preview_pixels(page) * kPreviewPixelBytes;
     return bytes;
 }
 
-std::uint64_t vertex_bytes(std::size_t vertices) {
-    return vertices * (2 * sizeof(Vec3) + 2 * sizeof(Vec2) + sizeof(Vec4));
+// Of a mesh or of the world: attributes that a file has none of take nothing.
+template <class Vertices>
+std::uint64_t vertex_bytes(const Vertices& v) {
+    return (v.positions.size() + v.normals.size()) * sizeof(Vec3) + (v.uv0.size() + v.uv1.size()) * sizeof(Vec2) +
+           v.colors.size() * sizeof(Vec4);
 }
 
 std::uint64_t mesh_memory(const Scene& scene) {
     std::uint64_t bytes = 0;
     for (const auto& mesh : scene.meshes)
-        bytes += vertex_bytes(mesh->positions.size()) +
+        bytes += vertex_bytes(*mesh) +
                  mesh->triangles.size() * (sizeof(Triangle) + 3 * sizeof(Vec2) + 2 * sizeof(std::uint32_t));
     return bytes;
 }
@@ -92,10 +98,21 @@ std::uint64_t output_memory(const Scene& scene, const Atlas& atlas) {
 
 }  // namespace
 
+std::uint64_t tracer_memory(const WorldGeometry& geometry) {
+    return geometry.triangles.size() * kTracerBytesPerTriangle + geometry.positions.size() * kTracerBytesPerVertex;
+}
+
+std::uint64_t light_memory(const WorldGeometry& geometry) {
+    const auto emitters = static_cast<std::uint64_t>(std::ranges::count_if(geometry.triangles, is_emitter));
+    if (emitters == 0) return 0;
+    // With one emitter there is a list of which light each triangle is.
+    return emitters * kLightBytesPerTriangle + geometry.triangles.size() * sizeof(std::uint32_t);
+}
+
 std::uint64_t scene_memory(const Scene& scene, const WorldGeometry& geometry, const Atlas& atlas) {
     std::uint64_t bytes = kProgramBytes + texture_memory(scene) + mesh_memory(scene) + document_memory(scene);
-    bytes += vertex_bytes(geometry.positions.size());
-    bytes += geometry.triangles.size() * (sizeof(WorldTriangle) + kTracerBytesPerTriangle + kBakedTriangleBytes);
+    bytes += vertex_bytes(geometry) + tracer_memory(geometry) + light_memory(geometry);
+    bytes += geometry.triangles.size() * (sizeof(WorldTriangle) + kBakedTriangleBytes);
     bytes += atlas.placements.size() * kPlacementBytes;
     if (scene.sky.map) bytes += scene.sky.map->radiance.size() * (sizeof(Vec3) + 12);
     return bytes;
@@ -103,7 +120,8 @@ std::uint64_t scene_memory(const Scene& scene, const WorldGeometry& geometry, co
 
 std::uint64_t page_memory(const AtlasPage& page, unsigned threads) {
     const std::uint64_t texels = pixels_of(page);
-    const std::uint64_t rows = kRowsPerThread * threads * page.width * kMasterPixelBytes * kCopiesOfRows;
+    const std::uint64_t rows =
+        std::uint64_t{kExrRowsPerChunk} * threads * page.width * kMasterPixelBytes * kCopiesOfRows;
     // The texel buffer is gone when the files are written.
     return texels * (kSumsBytes + kLightmapBytes + kBytesPerPixel) + std::max(texels * kTexelBufferBytes, rows);
 }

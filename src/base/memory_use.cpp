@@ -20,4 +20,9 @@ std::uint64_t peak_memory() {
     return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024u;
 }
 
+std::string megabytes(std::uint64_t bytes) {
+    const std::uint64_t whole = bytes >> 20;
+    return std::to_string(whole + ((bytes & 0xfffffu) != 0 ? 1 : 0)) + " MB";
+}
+
 }  // namespace lumel

@@ -20,5 +20,13 @@ TEST(PeakMemory, GrowsWithWhatIsTouched) {
     EXPECT_GE(after, before) << "a high-water mark does not fall";
 }
 
+TEST(Megabytes, AreRoundedUp) {
+    EXPECT_EQ(megabytes(0), "0 MB");
+    EXPECT_EQ(megabytes(1), "1 MB");
+    EXPECT_EQ(megabytes(3u << 20), "3 MB");
+    EXPECT_EQ(megabytes((3u << 20) + 1), "4 MB");
+    EXPECT_EQ(megabytes(~std::uint64_t{0}), "17592186044416 MB");
+}
+
 }  // namespace
 }  // namespace lumel

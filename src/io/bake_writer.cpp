@@ -8,6 +8,7 @@
 #include "base/memory_use.h"
 #include "base/try.h"
 #include "chart/chart_picture.h"
+#include "encode/output_sizes.h"
 #include "image/colormap.h"
 #include "image/tonemap.h"
 #include "io/atomic_file.h"
@@ -22,8 +23,6 @@
 namespace lumel {
 namespace {
 
-constexpr std::uint32_t kPreviewEdge = 1024;
-
 void put_color(std::vector<std::uint8_t>& rgb, std::size_t pixel, Vec3 color) {
     for (std::size_t c = 0; c < 3; ++c) rgb[3 * pixel + c] = static_cast<std::uint8_t>(color[c] * 255.0f + 0.5f);
 }
@@ -31,7 +30,7 @@ void put_color(std::vector<std::uint8_t>& rgb, std::size_t pixel, Vec3 color) {
 // A colour per chart, black between them; every block-th texel of the page.
 std::vector<std::uint8_t> chart_picture(const std::vector<std::uint32_t>& ids, const AtlasPage& page,
                                         const Image& like) {
-    const std::uint32_t block = (std::max(page.width, page.height) + kPreviewEdge - 1) / kPreviewEdge;
+    const std::uint32_t block = preview_block(page.width, page.height, kPreviewEdge);
     std::vector<std::uint8_t> out(std::size_t{like.width} * like.height * 3);
     for (std::uint32_t y = 0; y < like.height; ++y)
         for (std::uint32_t x = 0; x < like.width; ++x) {
@@ -92,8 +91,6 @@ std::uint64_t bytes_in(const std::filesystem::path& folder) {
         if (const std::uintmax_t size = at->file_size(error); !error) sum += size;
     return sum;
 }
-
-std::string megabytes(std::uint64_t bytes) { return std::to_string((bytes + (1u << 20) - 1) >> 20) + " MB"; }
 
 // The files that are baked must outlive the bake: baking out/scene.glb into out/ would replace it.
 Status check_not_input(const std::filesystem::path& output, const std::filesystem::path& input) {

@@ -17,6 +17,7 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
+#include "encode/output_sizes.h"
 #include "io/atomic_file.h"
 #include "io/image_io.h"
 
@@ -54,9 +55,6 @@ exr::Header make_header(std::uint32_t width, std::uint32_t height, std::span<con
     }
     return header;
 }
-
-// Rows that the library compresses together: fewer at a time would leave threads idle.
-constexpr std::uint32_t kRowsPerChunk = 16;
 
 // Half has no room above 65504: such values become the largest half, never infinity.
 half to_half(float v) {
@@ -170,7 +168,7 @@ Status write_exr(const std::filesystem::path& path, std::uint32_t width, std::ui
     if (!file.ok()) return file.commit();
     try {
         const unsigned threads = context ? context->threads() : 1;
-        RowBlock block(width, std::min(height, kRowsPerChunk * threads), threads, channels);
+        RowBlock block(width, std::min(height, kExrRowsPerChunk * threads), threads, channels);
         AtomicStream stream(file, path.string());
         const CompressionThreads compression(threads);
         exr::OutputFile output(stream, make_header(width, height, channels), compression.count());

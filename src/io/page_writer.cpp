@@ -7,6 +7,7 @@
 
 #include "base/try.h"
 #include "encode/l1.h"
+#include "encode/output_sizes.h"
 #include "encode/units.h"
 #include "image/tonemap.h"
 #include "io/image_io.h"
@@ -297,7 +298,7 @@ LitTexture lit_texture(const Lightmap& map, const LayerWeights& weights) {
 }
 
 PagePreview preview_of(const Lightmap& map, const LayerWeights& weights, std::uint32_t max_edge) {
-    const std::uint32_t block = (std::max(map.width, map.height) + max_edge - 1) / max_edge;
+    const std::uint32_t block = preview_block(map.width, map.height, max_edge);
     const std::uint32_t width = (map.width + block - 1) / block, height = (map.height + block - 1) / block;
     PagePreview out{Image(width, height, 3), Image(width, height, 1), {}};
     std::vector<std::uint32_t> counts(std::size_t{width} * height);
