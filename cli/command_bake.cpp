@@ -110,10 +110,12 @@ std::uint64_t memory_for_views(const BakeOptions& options, const BakeReport& rep
 }
 
 void print_summary(const BakeReport& report, const std::string& folder) {
-    std::printf("%s: %llu texels on %zu page%s, %.1f texels/m, %llu charts\n", folder.c_str(),
+    std::printf("%s: %llu texels on %zu page%s, %llu charts", folder.c_str(),
                 static_cast<unsigned long long>(report.texels), report.pages.size(),
-                report.pages.size() == 1 ? "" : "s", report.texels_per_metre,
-                static_cast<unsigned long long>(report.charts));
+                report.pages.size() == 1 ? "" : "s", static_cast<unsigned long long>(report.charts));
+    // A kept layout has a density of its own everywhere.
+    if (report.texels_per_metre > 0.0) std::printf(", %.1f texels/m", report.texels_per_metre);
+    std::printf("\n");
     std::printf(
         "%.1f Mrays at %.2f Mrays/s, %.0f %% of thread time in %s; estimated nRMSE %.4f; peak memory %llu MB\n",
         1e-6 * static_cast<double>(report.rays), 1e-6 * report.rays_per_second,
