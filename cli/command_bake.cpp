@@ -1,5 +1,6 @@
 // lumel bake: the main job.
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
@@ -116,12 +117,17 @@ void print_summary(const BakeReport& report, const std::string& folder) {
     // A kept layout has a density of its own everywhere.
     if (report.texels_per_metre > 0.0) std::printf(", %.1f texels/m", report.texels_per_metre);
     std::printf("\n");
-    std::printf(
-        "%.1f Mrays at %.2f Mrays/s, %.0f %% of thread time in %s; estimated nRMSE %.4f; peak memory %llu MB\n",
-        1e-6 * static_cast<double>(report.rays), 1e-6 * report.rays_per_second,
-        report.trace_wall_seconds > 0.0 ? 100.0 * report.tracer_seconds / (report.trace_wall_seconds * report.threads)
-                                        : 0.0,
-        report.tracer.c_str(), report.estimated_nrmse, static_cast<unsigned long long>(report.peak_memory_bytes >> 20));
+    std::printf("%.1f Mrays at %.2f Mrays/s, %.0f %% of thread time in %s; ", 1e-6 * static_cast<double>(report.rays),
+                1e-6 * report.rays_per_second,
+                report.trace_wall_seconds > 0.0
+                    ? 100.0 * report.tracer_seconds / (report.trace_wall_seconds * report.threads)
+                    : 0.0,
+                report.tracer.c_str());
+    if (std::isfinite(report.estimated_nrmse))
+        std::printf("estimated nRMSE %.4f; ", report.estimated_nrmse);
+    else
+        std::printf("nRMSE unknown from single paths; ");
+    std::printf("peak memory %llu MB\n", static_cast<unsigned long long>(report.peak_memory_bytes >> 20));
 }
 
 // While other threads still write into it.

@@ -41,7 +41,8 @@ struct BakeReport {
     double trace_wall_seconds = 0.0;        // wall time of the stage that traces
     double tracer_seconds = 0.0;            // inside the tracer's calls, summed over threads
     double rays_per_second = 0.0;           // rays over trace_wall_seconds
-    double estimated_nrmse = 0.0;           // from the stored variance: sqrt(mean variance) / mean irradiance
+    // From the stored variance, before denoising: sqrt(mean variance) / mean irradiance. NaN: of single paths, unknown.
+    double estimated_nrmse = 0.0;
     double mean_irradiance[3] = {0, 0, 0};  // I = E/pi over baked texels
     double texels_per_metre = 0.0;        // reached, mean over the area; below what was asked where charts were clamped
     double least_texels_per_metre = 0.0;  // of any chart that was not asked for less

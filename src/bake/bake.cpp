@@ -2,6 +2,7 @@
 #include "lumel/bake.h"
 
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "bake/memory.h"
@@ -90,12 +91,13 @@ Result<Atlas> make_atlas_within_memory(const Scene& scene, const WorldGeometry& 
 // Running totals over all pages for the report's error estimate.
 struct Totals {
     double variance = 0.0, irradiance[3] = {0, 0, 0};
-    std::uint64_t texels = 0;
+    std::uint64_t texels = 0, measured = 0;  // measured: of more than one path, so that they have a variance
 
     void add(const Lightmap& map, const std::array<bool, kLayerCount>& included) {
         for (std::size_t i = 0; i < map.texels.size(); ++i) {
             if (map.coverage[i] != Coverage::baked) continue;
             ++texels;
+            measured += map.texels.count[i] > 1 ? 1 : 0;
             for (std::size_t c = 0; c < 3; ++c) {
                 variance += static_cast<double>(map.texels.variance[i][c]);
                 for (std::size_t l = 0; l < kLayerCount; ++l)
@@ -111,7 +113,10 @@ struct Totals {
             report.mean_irradiance[c] = irradiance[c] / n;
             mean += report.mean_irradiance[c] / 3.0;
         }
-        if (mean > 0.0) report.estimated_nrmse = std::sqrt(variance / (3.0 * n)) / mean;
+        if (2 * measured < texels)
+            report.estimated_nrmse = std::numeric_limits<double>::quiet_NaN();
+        else if (mean > 0.0)
+            report.estimated_nrmse = std::sqrt(variance / (3.0 * n)) / mean;
     }
 };
 

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <cstdlib>
 
 #include "base/hash.h"
@@ -60,6 +61,17 @@ TEST(Bake, TheSameBitsForOneTwoAndEightThreads) {
     BakeOptions other = small_options();
     other.seed = 2;
     EXPECT_NE(one, bake_hash(2, other)) << "the hash sees nothing";
+}
+
+TEST(Bake, SinglePathsTellNothingOfTheirError) {
+    for (const std::uint32_t samples : {1u, 2u}) {
+        BakeOptions options = small_options();
+        options.texels_per_metre = 2;
+        options.samples = samples;
+        BakeReport report;
+        bake_hash(1, options, &report);
+        EXPECT_EQ(std::isnan(report.estimated_nrmse), samples == 1) << report.estimated_nrmse;
+    }
 }
 
 TEST(Bake, TheSameBitsForTheSeedsStopRule) {
