@@ -36,11 +36,11 @@ struct BakeReport {
     std::vector<StageTime> stages;
     std::vector<PageReport> pages;
     std::uint64_t triangles = 0, instances = 0, charts = 0, texels = 0, invalid_texels = 0;
-    std::uint64_t samples = 0;              // traced, over all texels
-    std::uint64_t rays = 0;                 // all kinds
-    double trace_wall_seconds = 0.0;        // wall time of the stage that traces
-    double tracer_seconds = 0.0;            // inside the tracer's calls, summed over threads
-    double rays_per_second = 0.0;           // rays over trace_wall_seconds
+    std::uint64_t samples = 0;        // traced, over all texels
+    std::uint64_t rays = 0;           // all kinds
+    double trace_wall_seconds = 0.0;  // wall time of the stage that traces
+    double tracer_seconds = 0.0;      // inside the tracer's calls, summed over threads
+    double rays_per_second = 0.0;     // rays over trace_wall_seconds
     // From the stored variance, before denoising: sqrt(mean variance) / mean irradiance. NaN: of single paths, unknown.
     double estimated_nrmse = 0.0;
     double mean_irradiance[3] = {0, 0, 0};  // I = E/pi over baked texels
