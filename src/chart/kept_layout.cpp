@@ -140,6 +140,7 @@ std::vector<ChartContact> find_contacts(const Scene& scene, const WorldGeometry&
         contact->foreign += foreign ? 1 : 0;
     });
     std::vector<ChartContact> out;
+    out.reserve(contacts.size());
     for (const auto& [key, found] : contacts) out.push_back(found);
     return out;
 }
