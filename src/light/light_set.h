@@ -70,6 +70,7 @@ public:
     void shapes_along(const Receiver& receiver, Vec3 direction, float max_distance, bool bounced, Add&& add) const {
         for (const std::uint32_t index : hittable_) {
             const LightHit hit = intersect_shape(index, receiver, direction, bounced);
+            // Also where its chance to be sampled is zero: all of its light is the rays' then.
             if (hit.radiance != Vec3{} && hit.distance < max_distance) add(hit);
         }
     }

@@ -106,7 +106,8 @@ TEST(EnclosedPoints, LeaveTheLightOfATexelToItsOpenPart) {
     ASSERT_EQ(irradiance[0].size(), irradiance[1].size()) << "the layouts differ";
     std::size_t both = 0, more = 0;
     for (std::size_t i = 0; i < irradiance[0].size(); ++i) {
-        // Of texels that are mostly below the box the ray rule keeps none, this one the part that is seen.
+        // Texels that are mostly below the box: invalid by their void rays if it is single-sided; else without the
+        // points below it, so that they have the light of the part that is seen.
         if (irradiance[0][i] < 0.0f) {
             if (irradiance[1][i] < 0.0f) continue;
             ++more;
