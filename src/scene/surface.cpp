@@ -41,8 +41,8 @@ constexpr std::array<float, 256> kByteToUnit = make_linear_table();
 // The largest whole number not above x, for |x| < 2^31. The baseline processor has no instruction for it, and a call of
 // the library's costs more than the rest of a lookup.
 float whole_below(float x) {
-    const auto whole = static_cast<float>(static_cast<std::int32_t>(x));
-    return whole > x ? whole - 1.0f : whole;
+    const auto whole = static_cast<std::int32_t>(x);
+    return static_cast<float>(whole - (static_cast<float>(whole) > x ? 1 : 0));
 }
 
 // Folds a coordinate into [0, 1]; anything not finite, or too large to have a fraction, becomes 0.
@@ -62,9 +62,8 @@ float fold(float u, Wrap wrap) {
 
 // The neighbour of a folded coordinate's texel lies at most one beyond the edge.
 std::uint32_t neighbour(std::int32_t i, std::int32_t size, Wrap wrap) {
-    if (i < 0) return static_cast<std::uint32_t>(wrap == Wrap::repeat ? size - 1 : 0);
-    if (i >= size) return static_cast<std::uint32_t>(wrap == Wrap::repeat ? 0 : size - 1);
-    return static_cast<std::uint32_t>(i);
+    const std::int32_t beyond = wrap == Wrap::repeat ? size : 1;
+    return static_cast<std::uint32_t>(i + (i < 0 ? beyond : 0) - (i >= size ? beyond : 0));
 }
 
 // The two texels of one axis and the weight of the second.

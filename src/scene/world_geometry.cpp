@@ -52,15 +52,6 @@ float WorldGeometry::compute_tracer_error(std::uint32_t triangle) const {
     return kFloatEpsilon * longest + 3.0f * gamma_bound(8) * (extent.x * extent.y) * (extent.z / area);
 }
 
-Vec3 WorldGeometry::shading_normal(std::uint32_t triangle, float b1, float b2) const {
-    const WorldTriangle& t = triangles[triangle];
-    const Vec3 n =
-        normals[t.vertices[0]] * (1.0f - b1 - b2) + normals[t.vertices[1]] * b1 + normals[t.vertices[2]] * b2;
-    if (dot(n, t.normal) > 0.0f) return normalize_or(n, t.normal);
-    // A triangle without area has no front; the vertex normals are all there is.
-    return t.normal != Vec3{} ? t.normal : normalize_or(n, {0, 1, 0});
-}
-
 float WorldGeometry::area(std::uint32_t triangle) const {
     return static_cast<float>(0.5 * std::sqrt(front_cross(*this, triangles[triangle]).squared()));
 }

@@ -53,7 +53,14 @@ struct WorldGeometry {
     [[nodiscard]] Vec3 geometric_normal(std::uint32_t triangle) const { return triangles[triangle].normal; }
     // Interpolated vertex normal at barycentrics (1-b1-b2, b1, b2), unit, on the front side: where the file's normal
     // points behind the face (n . n_g <= 0) it is the face normal. This is the normal that the runtime sees.
-    [[nodiscard]] Vec3 shading_normal(std::uint32_t triangle, float b1, float b2) const;
+    [[nodiscard]] Vec3 shading_normal(std::uint32_t triangle, float b1, float b2) const {
+        const WorldTriangle& t = triangles[triangle];
+        const Vec3 n =
+            normals[t.vertices[0]] * (1.0f - b1 - b2) + normals[t.vertices[1]] * b1 + normals[t.vertices[2]] * b2;
+        if (dot(n, t.normal) > 0.0f) return normalize_or(n, t.normal);
+        // A triangle without area has no front; the vertex normals are all there is.
+        return t.normal != Vec3{} ? t.normal : normalize_or(n, {0, 1, 0});
+    }
     [[nodiscard]] Vec3 position(std::uint32_t triangle, float b1, float b2) const {
         const auto [a, b, c] = corners(triangle);
         return a * (1.0f - b1 - b2) + b * b1 + c * b2;

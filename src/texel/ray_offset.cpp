@@ -19,17 +19,14 @@ namespace {
 
 Vec3 abs(Vec3 v) { return {std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)}; }
 
-// The next float above x, or below it; x finite.
-float next_float(float x, bool above) {
-    if (x == 0.0f) return above ? std::numeric_limits<float>::denorm_min() : -std::numeric_limits<float>::denorm_min();
-    const auto bits = std::bit_cast<std::int32_t>(x);
-    return std::bit_cast<float>((x > 0.0f) == above ? bits + 1 : bits - 1);
-}
-
-// fl(x + step), then one float further: not nearer than the exact sum.
+// fl(x + step), then one float further: not nearer than the exact sum. Without branches: the signs of a point and of a
+// normal cannot be foretold.
 float add_away(float x, float step) {
     const float sum = x + step;
-    return step == 0.0f ? sum : next_float(sum, step > 0.0f);
+    const std::int32_t towards = (step > 0.0f) - (step < 0.0f);
+    if (sum == 0.0f) return static_cast<float>(towards) * std::numeric_limits<float>::denorm_min();
+    const auto bits = std::bit_cast<std::int32_t>(sum);
+    return std::bit_cast<float>(bits + towards * (1 | (bits >> 31)));  // floats count away from zero on both sides
 }
 
 using Corners = std::array<Vec3, 3>;

@@ -1,21 +1,9 @@
 #include "trace/tracer.h"
 
-#include <cmath>
-
 #include "base/hash.h"
 #include "math/sampler.h"
 
 namespace lumel {
-
-bool is_traceable(const Ray& ray) {
-    // Far inside the range where squared distances stay finite; a comparison with NaN is false.
-    constexpr float kLargestCoordinate = 1e18f;
-    const bool origin = std::fabs(ray.origin.x) <= kLargestCoordinate &&
-                        std::fabs(ray.origin.y) <= kLargestCoordinate && std::fabs(ray.origin.z) <= kLargestCoordinate;
-    const float squared_length = dot(ray.direction, ray.direction);
-    const bool direction = squared_length > 0.999f && squared_length < 1.001f;
-    return origin && direction && ray.tmin >= 0.0f && ray.tmin < ray.tmax && std::isfinite(ray.tmax);
-}
 
 bool stops_ray(float opacity, std::uint32_t alpha_key, std::uint32_t triangle) {
     if (opacity >= 1.0f) return true;

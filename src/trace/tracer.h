@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -41,7 +42,15 @@ struct TraceStatistics {
 };
 
 // Whether a ray keeps the precondition above.
-bool is_traceable(const Ray& ray);
+inline bool is_traceable(const Ray& ray) {
+    // Far inside the range where squared distances stay finite; a comparison with NaN is false.
+    constexpr float kLargestCoordinate = 1e18f;
+    const bool origin = std::fabs(ray.origin.x) <= kLargestCoordinate &&
+                        std::fabs(ray.origin.y) <= kLargestCoordinate && std::fabs(ray.origin.z) <= kLargestCoordinate;
+    const float squared_length = dot(ray.direction, ray.direction);
+    const bool direction = squared_length > 0.999f && squared_length < 1.001f;
+    return origin && direction && ray.tmin >= 0.0f && ray.tmin < ray.tmax && std::isfinite(ray.tmax);
+}
 
 class Tracer {
 public:
