@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "flux_integrator.h"
 #include "load.h"
+#include "path/light_cells.h"
 
 namespace lumel::bench {
 namespace {
@@ -23,6 +24,16 @@ RadianceSums brute_force(const GatherJob& job) {
     const LightSet lights(b.scene, b.geometry, b.surfaces, choice);
     return need(gather_page(b.texels, b.charts, b.atlas, transport_through(b, lights), job.path, job.range.first,
                             job.range.count, job.context));
+}
+
+RadianceSums with_cells(const GatherJob& job) {
+    const BenchScene& b = job.bench;
+    const LightSet lights(b.scene, b.geometry, b.surfaces, Choice::tree);
+    Transport transport = transport_through(b, lights);
+    const SurfaceCells cells = need(make_lit_cells(b.charts, b.atlas, transport, job.path, job.context));
+    transport.cells = &cells;
+    return need(gather_page(b.texels, b.charts, b.atlas, transport, job.path, job.range.first, job.range.count,
+                            job.context));
 }
 
 RadianceSums flux_with(const GatherJob& job, const FluxChoices& choices, Choice choice) {
@@ -64,6 +75,7 @@ constexpr Method kMethods[] = {
     {"flux-all", "the same, all lights at each hit", true, flux_all},
     {"power", "Lumel's brute force, local lights chosen by power", true, brute_force<Choice::power>},
     {"tree", "Lumel's brute force, local lights chosen by the light tree", true, brute_force<Choice::tree>},
+    {"cells", "Lumel's default: the same, paths end at surface cells", true, with_cells},
     {"flux-as-power", "flux with all choices set to those of power: is it a fair one?", false,
      flux_as_lumel<Choice::power>},
     {"flux-as-tree", "flux with all choices set to those of tree", false, flux_as_lumel<Choice::tree>},

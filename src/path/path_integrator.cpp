@@ -29,6 +29,7 @@ enum Pair : std::uint32_t { kDirectionPair, kSkyPair, kLocalPair, kChoicePair, k
 
 constexpr std::uint32_t kRouletteFrom = 3;             // the first vertex after which a path may be ended by chance
 constexpr std::uint32_t kDirectionSalt = 0x51ed270bu;  // of the alpha keys of sampled directions
+constexpr float kNearHit = 2.0f;  // first hits nearer than so many edges of a cell see its steps: paths go on there
 constexpr float kShadowShortening = 1.0f - 1e-4f;  // of shadow rays to finite lights, against hitting the light itself
 
 float power_heuristic(float pdf, float other_pdf) {
@@ -207,12 +208,14 @@ private:
 }  // namespace
 
 // Sink: void_path(lane); free_path(lane, direction, pdf, distance or infinity, sky);
-// light(lane, layer, direction, radiance over density).
+// light(lane, layer, direction, radiance over density). kFromCell: the start is a cell's, whose light is what a bounce
+// sees of it, and paths that end at a cell are links: link(lane, direction, pdf, cell, share of its irradiance).
 template <class Sink>
 void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w, Sink& sink) const {
     LUMEL_CHECK(starts.size() <= kWavefrontLanes, starts.size());
     const LightSet& lights = transport_.lights;
     const WorldGeometry& geometry = transport_.geometry;
+    const SurfaceCells* cells = transport_.cells;
 
     // First rays: over the hemisphere of the start's normal.
     const std::size_t count = starts.size();
@@ -256,7 +259,7 @@ void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w
         LightQueue<Workspace> queue(transport_, w);
         for (std::uint32_t lane = 0; lane < count; ++lane) {
             queue.sample_all(
-                lane, starts[lane], 0, false, [](float cosine) { return GatherHemisphere::pdf(cosine); },
+                lane, starts[lane], 0, Sink::kFromCell, [](float cosine) { return GatherHemisphere::pdf(cosine); },
                 [](float) {
                     return Vec3{1, 1, 1};
                 });
@@ -266,6 +269,8 @@ void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w
 
     for (std::uint32_t bounce = 0;; ++bounce) {
         const bool first = bounce == 0;
+        const bool bounced = !first || Sink::kFromCell;
+        const std::uint32_t first_pair = (bounce + 1) * pairs_per_vertex_;
         const auto arrive = [&](std::uint32_t lane, Layer layer, const LightHit& light) {
             if (is_black(light.radiance)) return;
             const auto& vertex = w.vertex[lane];
@@ -287,14 +292,14 @@ void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w
             auto& vertex = w.vertex[lane];
             const float distance = hit.missed() ? kInfiniteDistance : hit.t;
             if (lights.has_shapes())
-                lights.shapes_along({vertex.position, vertex.normal}, vertex.direction, distance, !first,
+                lights.shapes_along({vertex.position, vertex.normal}, vertex.direction, distance, bounced,
                                     [&](const LightHit& light) { arrive(lane, Layer::direct, light); });
             if (first) sink.free_path(lane, vertex.direction, vertex.direction_pdf, distance, hit.missed());
             if (hit.missed()) {
                 if (lights.has_sky()) arrive(lane, Layer::sky, lights.sky(vertex.direction));
                 for (std::size_t sun = 0; sun < lights.sun_count(); ++sun) {
                     if (!lights.samples_sun(sun)) continue;  // no ray meets a sun without size
-                    const LightHit light = lights.sun(sun, vertex.direction, !first);
+                    const LightHit light = lights.sun(sun, vertex.direction, bounced);
                     if (light.pdf > 0.0f) arrive(lane, Layer::direct, light);
                 }
                 continue;
@@ -304,7 +309,7 @@ void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w
             if (triangle.flags & kEmissive)
                 arrive(lane, Layer::direct,
                        lights.emissive({vertex.position, vertex.normal}, hit.triangle, hit.b1, hit.b2, vertex.direction,
-                                       hit.t, hit.back_face, !first));
+                                       hit.t, hit.back_face, bounced));
             if (bounce == options_.bounces || (triangle.flags & kOccluderOnly)) continue;
 
             // The path stands on a new surface.
@@ -315,13 +320,24 @@ void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w
             vertex.triangle = hit.triangle;
             vertex.reflectance = SurfaceReader::finish(w.albedo[i]) * kInvPi;
             if (is_black(vertex.reflectance)) continue;
+            if (cells) {
+                const Vec2 jitter = Sampler(starts[lane].key, starts[lane].index).pair(first_pair + kDirectionPair);
+                const std::uint32_t cell = cells->find(hit.triangle, hit.b1, hit.b2, hit.back_face, jitter);
+                if (cell != kNone && !(first && hit.t < kNearHit * cells->edge(cell))) {
+                    const Vec3 share = w.throughput[lane] * vertex.reflectance * kPi;
+                    if constexpr (Sink::kFromCell)
+                        sink.link(lane, w.first_direction[lane], w.first_pdf[lane], cell, share);
+                    else
+                        w.bounced[lane] += share * cells->irradiance(cell);
+                    continue;
+                }
+            }
             w.lanes[kept++] = lane;
         }
         alive = kept;
         if (alive == 0) break;
 
         // Direct light on it.
-        const std::uint32_t first_pair = (bounce + 1) * pairs_per_vertex_;
         LightQueue<Workspace> queue(transport_, w);
         for (std::size_t i = 0; i < alive; ++i) {
             const std::uint32_t lane = w.lanes[i];
@@ -404,6 +420,8 @@ namespace {
 // Only the irradiance of each path, for pictures.
 class IrradianceSink {
 public:
+    static constexpr bool kFromCell = false;
+
     IrradianceSink(const PathOptions& options, std::span<const PathStart> starts, std::span<Vec3> irradiance,
                    std::span<std::uint8_t> valid)
         : options_(options), starts_(starts), irradiance_(irradiance), valid_(valid) {
@@ -427,6 +445,72 @@ private:
 };
 
 }  // namespace
+
+namespace {
+
+// What reaches a cell by itself, and its links.
+class CellSink {
+public:
+    static constexpr bool kFromCell = true;
+
+    CellSink(std::span<CellLink> links, CellGather& gather) : links_(links), gather_(gather) {}
+
+    void begin(std::span<const PathStart> starts, std::uint32_t first) {
+        starts_ = starts;
+        first_ = first;
+        gather_.traced += static_cast<std::uint32_t>(starts.size());
+        gather_.count += static_cast<std::uint32_t>(starts.size());
+    }
+    void void_path(std::uint32_t) { --gather_.count; }
+    void free_path(std::uint32_t, Vec3, float, float, bool) {}
+    void light(std::uint32_t lane, Layer, Vec3 direction, Vec3 value) {
+        sum_ += value * (std::max(0.0f, dot(direction, starts_[lane].normal)) * kInvPi);
+    }
+    void link(std::uint32_t lane, Vec3 direction, float pdf, std::uint32_t cell, Vec3 share) {
+        constexpr float kOne = 32768.0f;
+        const float cosine = std::max(0.0f, dot(direction, starts_[lane].normal));
+        CellLink& link = links_[first_ + lane];
+        link.from = cell;
+        for (std::size_t c = 0; c < 3; ++c)
+            link.weight[c] =
+                static_cast<std::uint16_t>(std::min(65535.0f, share[c] * (cosine * kInvPi / pdf * kOne) + 0.5f));
+    }
+    void end() {
+        if (gather_.count > 0) gather_.direct = sum_ * (1.0f / static_cast<float>(gather_.count));
+    }
+
+private:
+    std::span<CellLink> links_;
+    CellGather& gather_;
+    std::span<const PathStart> starts_;
+    std::uint32_t first_ = 0;
+    Vec3 sum_{};
+};
+
+}  // namespace
+
+void PathIntegrator::gather_cell(const GatherSite& site, bool back, Workspace& w, CellGather& out,
+                                 std::span<CellLink> links) const {
+    LUMEL_CHECK(!site.points.empty() && site.points.size() <= kSamplesPerTexel, site.points.size());
+    const std::uint32_t key = sampler_key(options_.seed, site.id);
+    std::size_t n = site.points.size();
+    std::fill(w.sides.begin(), w.sides.end(), static_cast<std::uint8_t>(back));
+    surface_starts(site.points, std::span(w.sides).first(n), w, w.surfaces);
+    if (any_double_sided_)
+        n = keep_open_points(std::span(w.surfaces).first(n), site.texel_size, key, transport_, w.rays, w.hits);
+    CellSink sink(links, out);
+    for (std::uint32_t base = 0; base < links.size(); base += kWavefrontLanes) {
+        const auto lanes = std::min<std::uint32_t>(kWavefrontLanes, static_cast<std::uint32_t>(links.size()) - base);
+        for (std::uint32_t lane = 0; lane < lanes; ++lane) {
+            const SurfaceStart& start = w.surfaces[(base + lane + key) % n];
+            w.starts[lane] = {start.origin, start.normal, key, base + lane, start.skip};
+        }
+        const auto starts = std::span<const PathStart>(w.starts).first(lanes);
+        sink.begin(starts, base);
+        trace_paths(starts, w, sink);
+    }
+    sink.end();
+}
 
 void PathIntegrator::gather_irradiance(std::span<const PathStart> starts, Workspace& workspace,
                                        std::span<Vec3> irradiance, std::span<std::uint8_t> valid) const {

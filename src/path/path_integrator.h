@@ -14,6 +14,7 @@
 #include <span>
 #include <vector>
 
+#include "cells/surface_cells.h"
 #include "light/light_set.h"
 #include "lumel/options.h"
 #include "path/radiance_sums.h"
@@ -48,6 +49,7 @@ struct Transport {
     SurfaceReader surfaces;
     const LightSet& lights;
     const Tracer& tracer;
+    const SurfaceCells* cells = nullptr;  // where paths may end after a bounce; null: brute force
 };
 
 // Where a path starts: a point that looks out over the hemisphere of `normal`.
@@ -89,6 +91,11 @@ public:
     // cancelled.
     void gather_texel(const GatherSite& site, Workspace& workspace, RadianceSums& out, std::size_t index,
                       const Context& context) const;
+
+    // What paths from a cell bring to it by themselves, and one link for each that ends at another cell. As many paths
+    // as there are links; their light is what a bounce sees of it.
+    void gather_cell(const GatherSite& site, bool back, Workspace& workspace, CellGather& out,
+                     std::span<CellLink> links) const;
 
     // Irradiance I about the start's normal of each path (at most kWavefrontLanes), all included layers; void paths
     // give valid = 0: divide the sum over all paths by the number of valid ones. For pictures: `lumel render`.

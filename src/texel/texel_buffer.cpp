@@ -68,7 +68,7 @@ bool locate_all(const TexelSamples& samples, std::uint64_t valid, std::span<cons
 
 std::uint32_t sample_points(const TexelBuffer& texels, std::size_t texel, const Scene& scene,
                             const WorldGeometry& geometry, const ChartSet& charts, const Atlas& atlas,
-                            std::span<SamplePoint, kSamplesPerTexel> out) {
+                            std::span<SamplePoint, kSamplesPerTexel> out, Footprint footprint) {
     const std::uint32_t first = texels.first_triangle[texel], end = texels.first_triangle[texel + 1];
     const std::span triangles(&texels.triangles[first], end - first);
     const TexelSamples samples(texels.x[texel], texels.y[texel]);
@@ -81,7 +81,7 @@ std::uint32_t sample_points(const TexelBuffer& texels, std::size_t texel, const 
         return 1;
     }
     constexpr std::uint64_t kAll = ~std::uint64_t{0};
-    if (valid == kAll &&
+    if (valid == kAll && footprint == Footprint::gather &&
         locate_all(TexelSamples::gathering(texels.x[texel], texels.y[texel]), valid, triangles, uv, out))
         return kSamplesPerTexel;
     // On the rim; or a shrunk point fell into a crack between two triangles, which the others do not.

@@ -64,10 +64,13 @@ Result<TexelBuffer> rasterize_page(const Scene& scene, const WorldGeometry& geom
                                    const Atlas& atlas, std::uint32_t page,
                                    std::span<const std::uint32_t> page_triangles, Context& context);
 
+// From how much of a texel that is covered whole its points gather: kGatherFootprint of it, or all.
+enum class Footprint : std::uint8_t { gather, whole };
+
 // Expands the valid sample points of a texel, in order of s; at least one: where no Hammersley point lies inside a
 // triangle it is the middle of the largest part that a triangle shares with the texel. Returns how many were written.
 std::uint32_t sample_points(const TexelBuffer& texels, std::size_t texel, const Scene& scene,
                             const WorldGeometry& geometry, const ChartSet& charts, const Atlas& atlas,
-                            std::span<SamplePoint, kSamplesPerTexel> out);
+                            std::span<SamplePoint, kSamplesPerTexel> out, Footprint footprint = Footprint::gather);
 
 }  // namespace lumel

@@ -1,0 +1,221 @@
+#include "cells/surface_cells.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/check.h"
+#include "base/parallel.h"
+#include "base/try.h"
+
+namespace lumel {
+namespace {
+
+constexpr float kLift = 1.0f / 16;            // of the points that look at each other, in edges of the cell
+constexpr std::uint32_t kVisibilityStep = 4;  // every fourth sample point is looked at
+
+// The eight texels around one, in this order.
+constexpr std::array<std::array<std::int32_t, 2>, 8> kNeighbours{
+    {{-1, -1}, {0, -1}, {1, -1}, {-1, 0}, {1, 0}, {-1, 1}, {0, 1}, {1, 1}}};
+std::uint32_t neighbour_bit(std::int32_t dx, std::int32_t dy) {
+    const std::int32_t index = (dy + 1) * 3 + (dx + 1);
+    return static_cast<std::uint32_t>(index > 4 ? index - 1 : index);
+}
+
+Error cancelled() { return {ErrorCode::cancelled, "the bake was cancelled", {}, {}}; }
+
+// From one point to another; they must not coincide.
+Ray segment(Vec3 from, Vec3 move, float distance) {
+    Ray ray;
+    ray.origin = from;
+    ray.direction = move / distance;
+    ray.tmax = distance;
+    return ray;
+}
+
+}  // namespace
+
+Result<SurfaceCells> SurfaceCells::make(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts,
+                                        const Atlas& atlas, const Tracer& tracer, const CellOptions& options,
+                                        Context& context) {
+    LUMEL_CHECK(options.texels_per_cell > 0.0, options.texels_per_cell);
+    SurfaceCells cells;
+    ChartOptions layout;
+    layout.max_page = options.max_page;
+    if (charts.scene_wide) {
+        const auto shrink = [&](std::uint32_t edge) {
+            return std::max(2u, static_cast<std::uint32_t>(std::ceil(edge / options.texels_per_cell)));
+        };
+        layout.resolution_width = shrink(atlas.pages[0].width);
+        layout.resolution_height = shrink(atlas.pages[0].height);
+    } else {
+        layout.texels_per_metre = atlas.texels_per_metre / options.texels_per_cell;
+    }
+    // What the cells' layout has to say of charts is no news to the user.
+    const Diagnostics before = context.diagnostics;
+    LUMEL_TRY(cells.atlas_, make_atlas(scene, geometry, charts, layout, context));
+    const auto by_page = triangles_by_page(scene, geometry, charts, cells.atlas_);
+    for (std::uint32_t page = 0; page < cells.atlas_.pages.size(); ++page) {
+        LUMEL_TRY(TexelBuffer texels,
+                  rasterize_page(scene, geometry, charts, cells.atlas_, page, by_page[page], context));
+        cells.pages_.push_back(std::move(texels));
+    }
+    context.diagnostics = before;
+    cells.lay_out(scene, geometry, charts);
+    if (!cells.find_visibility(scene, geometry, charts, tracer, context)) return cancelled();
+    return cells;
+}
+
+void SurfaceCells::lay_out(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts) {
+    for (std::uint32_t page = 0; page < pages_.size(); ++page) {
+        const TexelBuffer& texels = pages_[page];
+        first_cell_.push_back(static_cast<std::uint32_t>(sites_.size()));
+        for (std::uint32_t i = 0; i < texels.size(); ++i) sites_.push_back({page, i, texels.world_size[i], kNone});
+    }
+    std::uint32_t next = static_cast<std::uint32_t>(sites_.size());
+    for (std::uint32_t front = 0; front < sites_.size(); ++front) {
+        Site& s = sites_[front];
+        const TexelBuffer& texels = pages_[s.page];
+        const std::uint32_t triangle = texels.triangles[texels.first_triangle[s.texel]];
+        if (!(geometry.triangles[triangle].flags & kDoubleSided)) continue;
+        s.back = next++;
+        front_of_.push_back(front);
+    }
+    usable_.assign(next, 1);
+    open_.assign(next, 0);
+    irradiance_.assign(next, Vec3{});
+    triangles_.resize(geometry.triangle_count());
+    for (std::uint32_t t = 0; t < geometry.triangle_count(); ++t) {
+        const Atlas::TriangleUv uv = atlas_.triangle_uv(charts, geometry, scene, t);
+        if (uv.page == kNone) continue;
+        const WorldTriangle& triangle = geometry.triangles[t];
+        const MeshCharts& mesh = charts.meshes[scene.instances[triangle.instance].mesh];
+        triangles_[t] = {uv.texels, uv.page,
+                         atlas_.first_placement[triangle.instance] + mesh.chart_of_triangle[triangle.mesh_triangle]};
+    }
+}
+
+std::uint32_t SurfaceCells::front_at(std::uint32_t page, std::int32_t x, std::int32_t y,
+                                     std::uint32_t placement) const {
+    const TexelBuffer& texels = pages_[page];
+    if (x < 0 || y < 0 || x >= static_cast<std::int32_t>(texels.width) || y >= static_cast<std::int32_t>(texels.height))
+        return kNone;
+    const std::uint32_t texel =
+        texels.texel_at[static_cast<std::size_t>(y) * texels.width + static_cast<std::size_t>(x)];
+    if (texel == kNone || texels.chart[texel] != placement) return kNone;
+    return first_cell_[page] + texel;
+}
+
+std::uint32_t SurfaceCells::find(std::uint32_t triangle, float b1, float b2, bool back_face, Vec2 jitter) const {
+    const Corners& c = triangles_[triangle];
+    if (c.page == kNone) return kNone;
+    const Vec2 p = c.uv[0] * (1.0f - b1 - b2) + c.uv[1] * b1 + c.uv[2] * b2;
+    const auto x = static_cast<std::int32_t>(p.x), y = static_cast<std::int32_t>(p.y);
+    const auto side = [&](std::uint32_t front) { return back_face && front != kNone ? sites_[front].back : front; };
+    const std::uint32_t cell = side(front_at(c.page, x, y, c.placement));
+    if (cell == kNone || !usable_[cell]) return kNone;
+    const auto jittered_x = static_cast<std::int32_t>(std::floor(p.x + jitter.x - 0.5f));
+    const auto jittered_y = static_cast<std::int32_t>(std::floor(p.y + jitter.y - 0.5f));
+    if (jittered_x == x && jittered_y == y) return cell;
+    if (!(open_[cell] >> neighbour_bit(jittered_x - x, jittered_y - y) & 1u)) return cell;
+    const std::uint32_t neighbour = side(front_at(c.page, jittered_x, jittered_y, c.placement));
+    return neighbour != kNone && usable_[neighbour] ? neighbour : cell;
+}
+
+std::uint32_t SurfaceCells::sample_points(std::uint32_t cell, const Scene& scene, const WorldGeometry& geometry,
+                                          const ChartSet& charts,
+                                          std::span<SamplePoint, kSamplesPerTexel> out) const {
+    if (!usable_[cell]) return 0;
+    const Site& s = site(cell);
+    return lumel::sample_points(pages_[s.page], s.texel, scene, geometry, charts, atlas_, out, Footprint::whole);
+}
+
+// A cell whose sample points are not all seen from its middle is not usable; neighbours lend each other light where
+// their middles see each other. Points are lifted a little, so that roughness of the surface itself does not count.
+bool SurfaceCells::find_visibility(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts,
+                                   const Tracer& tracer, Context& context) {
+    return parallel_for(
+        context, size(), 64,
+        [&](const ChunkRange& range) {
+            std::array<SamplePoint, kSamplesPerTexel> points;
+            std::array<Ray, kSamplesPerTexel / kVisibilityStep + kNeighbours.size()> rays;
+            std::array<std::uint8_t, rays.size()> blocked;
+            std::array<std::uint32_t, kNeighbours.size()> bits{};
+            for (std::size_t i = range.begin; i < range.end; ++i) {
+                const auto cell = static_cast<std::uint32_t>(i);
+                const Site& s = site(cell);
+                const TexelBuffer& texels = pages_[s.page];
+                const float lift = (is_back(cell) ? -kLift : kLift) * s.edge;
+                const auto middle_of = [&](std::uint32_t texel) {
+                    return texels.position[texel] + texels.normal[texel] * lift;
+                };
+                const Vec3 middle = middle_of(s.texel);
+                const std::uint32_t n = sample_points(cell, scene, geometry, charts, points);
+                std::size_t count = 0;
+                const auto look_at = [&](Vec3 to) {
+                    const float distance = length(to - middle);
+                    if (!(distance > 0.0f)) return false;
+                    rays[count++] = segment(middle, to - middle, distance);
+                    return true;
+                };
+                for (std::uint32_t k = 0; k < n; k += kVisibilityStep) {
+                    const auto [t, b1, b2] = points[k];
+                    look_at(geometry.position(t, b1, b2) + geometry.shading_normal(t, b1, b2) * lift);
+                }
+                const std::size_t own = count;
+                for (const auto& [dx, dy] : kNeighbours) {
+                    const std::uint32_t front =
+                        front_at(s.page, texels.x[s.texel] + dx, texels.y[s.texel] + dy, texels.chart[s.texel]);
+                    if (front == kNone || (is_back(cell) && sites_[front].back == kNone)) continue;
+                    if (look_at(middle_of(sites_[front].texel))) bits[count - own - 1] = neighbour_bit(dx, dy);
+                }
+                tracer.occluded(std::span(rays).first(count), std::span(blocked).first(count));
+                const bool whole = std::none_of(blocked.begin(), blocked.begin() + static_cast<std::ptrdiff_t>(own),
+                                                [](std::uint8_t b) { return b != 0; });
+                usable_[cell] = whole ? 1 : 0;
+                for (std::size_t k = own; k < count; ++k)
+                    if (!blocked[k]) open_[cell] |= static_cast<std::uint8_t>(1u << bits[k - own]);
+            }
+        },
+        "cells");
+}
+
+Status SurfaceCells::solve(std::span<const CellGather> gathers, std::span<const CellLink> links, std::uint32_t bounces,
+                           Context& context) {
+    LUMEL_CHECK(gathers.size() == size(), gathers.size(), size());
+    LUMEL_CHECK(links.size() % std::max<std::size_t>(1, size()) == 0, links.size(), size());
+    const std::size_t links_each = size() == 0 ? 0 : links.size() / size();
+    for (std::size_t i = 0; i < size(); ++i) {
+        const CellGather& gather = gathers[i];
+        if (2 * gather.count <= gather.traced) usable_[i] = 0;
+        irradiance_[i] = usable_[i] ? gather.direct : Vec3{};
+    }
+    constexpr double kEnough = 1e-5;  // change of an iteration, of all light
+    std::vector<Vec3> next(size());
+    for (std::uint32_t bounce = 1; bounce < bounces; ++bounce) {
+        const bool done = parallel_for(context, size(), 256, [&](const ChunkRange& range) {
+            for (std::size_t i = range.begin; i < range.end; ++i) {
+                next[i] = {};
+                if (!usable_[i]) continue;
+                Vec3 sum{};
+                for (const CellLink& link : links.subspan(i * links_each, links_each)) {
+                    if (link.from == kNone) continue;
+                    const Vec3 from = irradiance_[link.from];
+                    for (std::size_t c = 0; c < 3; ++c) sum[c] += static_cast<float>(link.weight[c]) * from[c];
+                }
+                next[i] = gathers[i].direct + sum * (1.0f / (32768.0f * static_cast<float>(gathers[i].count)));
+            }
+        });
+        if (!done) return cancelled();
+        double change = 0.0, total = 0.0;
+        for (std::size_t i = 0; i < size(); ++i)
+            for (std::size_t c = 0; c < 3; ++c) {
+                change += std::fabs(static_cast<double>(next[i][c]) - static_cast<double>(irradiance_[i][c]));
+                total += static_cast<double>(next[i][c]);
+            }
+        std::swap(irradiance_, next);
+        if (change <= kEnough * total) break;
+    }
+    return success();
+}
+
+}  // namespace lumel

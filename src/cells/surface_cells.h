@@ -1,0 +1,108 @@
+// Surface cells: a radiance cache on the charts. The texels of a coarse atlas of the same charts are the cells, front
+// and back of double-sided surfaces apart; each knows the irradiance that it receives, all bounces included. Paths that
+// reach one end there.
+//
+// A cell belongs to a chart and a side, never to a place alone: a wall 0.3 m thick would pass light through cells keyed
+// by position. Inside a cell all points see each other, and it lends its light to a neighbour only where the two see
+// each other; what does not (a cell that a wall stands on) is no cell, and paths go on there.
+// Based on: Martin and Einarsson 2010, "A Real-Time Radiosity Architecture for Video Games" (bounces by iterating links
+// that were traced once); Wald, Ward et al. for caching irradiance. Different here: cells serve a baker whose own paths
+// look them up after one ray (a final gather), and their size follows the number of samples.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "chart/chart_set.h"
+#include "lumel/context.h"
+#include "lumel/result.h"
+#include "texel/texel_buffer.h"
+#include "trace/tracer.h"
+
+namespace lumel {
+
+// Of what arrives at a cell, the share `weight` of the irradiance of another.
+struct CellLink {
+    std::uint32_t from = kNone;              // kNone: no link
+    std::array<std::uint16_t, 3> weight{};   // of 2^15: up to 2
+};
+
+// What a cell gathered by paths of its own, as sums: light that reached it without another cell, and links.
+struct CellGather {
+    Vec3 direct{};             // mean over the paths that count
+    std::uint32_t count = 0;   // paths that count
+    std::uint32_t traced = 0;
+};
+
+struct CellOptions {
+    double texels_per_cell = 4.0;   // edge of a cell in texels of the atlas
+    std::uint32_t max_page = 4096;  // of the cells' own atlas
+};
+
+class SurfaceCells {
+public:
+    // Lays out the cells and tests who sees whom. `atlas`: that of the bake, which gives the scale. Error: cancelled.
+    static Result<SurfaceCells> make(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts,
+                                     const Atlas& atlas, const Tracer& tracer, const CellOptions& options,
+                                     Context& context);
+
+    // Fronts first, then the backs of double-sided ones.
+    [[nodiscard]] std::size_t size() const { return usable_.size(); }
+
+    // The cell at a point of a world triangle, or kNone: nothing is known there. `jitter`, in [0, 1)^2, picks among the
+    // four nearest cells that see each other with the shares of bilinear interpolation.
+    [[nodiscard]] std::uint32_t find(std::uint32_t triangle, float b1, float b2, bool back_face, Vec2 jitter) const;
+
+    // Metres across a cell.
+    [[nodiscard]] float edge(std::uint32_t cell) const { return site(cell).edge; }
+    // I = E/pi about the vertex normal, W/(m^2 sr), all light that the bounces carry.
+    [[nodiscard]] Vec3 irradiance(std::uint32_t cell) const { return irradiance_[cell]; }
+
+    // Where a cell gathers: its sample points; nothing of cells that are not usable. Returns how many.
+    std::uint32_t sample_points(std::uint32_t cell, const Scene& scene, const WorldGeometry& geometry,
+                                const ChartSet& charts, std::span<SamplePoint, kSamplesPerTexel> out) const;
+    [[nodiscard]] bool is_back(std::uint32_t cell) const { return cell >= sites_.size(); }
+    [[nodiscard]] bool usable(std::uint32_t cell) const { return usable_[cell] != 0; }
+
+    // Sets the irradiance from what all cells gathered: `gathers` of each, `links` as many for each. Bounces are
+    // iterations over the links, at no ray. Cells most of whose paths met the backs of surfaces become unusable.
+    // Error: cancelled.
+    Status solve(std::span<const CellGather> gathers, std::span<const CellLink> links, std::uint32_t bounces,
+                 Context& context);
+
+private:
+    struct Site {
+        std::uint32_t page = 0, texel = 0;
+        float edge = 0.0f;
+        std::uint32_t back = kNone;  // cell of the back
+    };
+    struct Corners {
+        std::array<Vec2, 3> uv{};  // in texels of the cells' page
+        std::uint32_t page = kNone;
+        std::uint32_t placement = kNone;
+    };
+
+    [[nodiscard]] const Site& site(std::uint32_t cell) const {
+        return sites_[is_back(cell) ? front_of_[cell - sites_.size()] : cell];
+    }
+    // The front cell at a texel of a page, if it belongs to that chart; else kNone.
+    [[nodiscard]] std::uint32_t front_at(std::uint32_t page, std::int32_t x, std::int32_t y,
+                                         std::uint32_t placement) const;
+    void lay_out(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts);
+    bool find_visibility(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts,
+                         const Tracer& tracer, Context& context);
+
+    Atlas atlas_;
+    std::vector<TexelBuffer> pages_;
+    std::vector<std::uint32_t> first_cell_;  // per page
+    std::vector<Site> sites_;                // of fronts
+    std::vector<std::uint32_t> front_of_;    // of backs
+    std::vector<Corners> triangles_;         // per world triangle
+    std::vector<std::uint8_t> usable_;
+    std::vector<std::uint8_t> open_;  // bit per neighbour: the two see each other
+    std::vector<Vec3> irradiance_;
+};
+
+}  // namespace lumel
