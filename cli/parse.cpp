@@ -104,7 +104,7 @@ void LightOptions::declare(CLI::App& app) {
     CLI::Option* const sun = app.add_option("--sun-direction", sun_direction_, "X,Y,Z: the way the sun's light travels")
                                  ->check(not_empty())
                                  ->group(group);
-    app.add_option("--sun-illuminance", values_.sun.illuminance, "Lux on a plane facing the sun (0: 100000)")
+    app.add_option("--sun-illuminance", values_.sun.illuminance, "Lux on a plane facing the sun")
         ->check(not_negative())
         ->needs(sun)
         ->group(group);

@@ -37,7 +37,7 @@ enum class StopRule : std::uint8_t {
 
 struct SunOptions {
     std::optional<Vec3> direction;  // the way light travels, of any length; unset: no sun from the options
-    double illuminance = 0.0;       // lux on a plane facing it; 0 with a direction set: 100 000
+    double illuminance = 100000.0;  // lux on a plane facing it: a clear noon
     Vec3 color{1, 1, 1};            // linear, times illuminance
     double angle_degrees = 0.0;     // angular diameter, 0..90
 };

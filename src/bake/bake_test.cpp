@@ -182,6 +182,17 @@ TEST(Lighting, TheSunsDirectionMayHaveAnyLength) {
     }
 }
 
+TEST(Lighting, ASunOfNoLuxIsBlack) {
+    for (const double lux : {100000.0, 0.0}) {
+        Scene scene = test::room();
+        BakeOptions options;
+        options.sun.direction = Vec3{0, -1, 0};
+        if (lux == 0.0) options.sun.illuminance = 0.0;  // else as it is by default
+        ASSERT_TRUE(apply_lighting(scene, options).ok());
+        EXPECT_EQ(scene.lights.back().intensity, (Vec3{1, 1, 1} * float(lux)));
+    }
+}
+
 TEST(Bake, NoLightIsAnErrorThatNamesTheRemedy) {
     test::SceneBuilder b;
     const auto white = b.material({0.8f, 0.8f, 0.8f});

@@ -14,7 +14,6 @@
 namespace lumel {
 namespace {
 
-constexpr double kDefaultSunIlluminance = 100000.0;  // lux: a clear noon
 constexpr float kRadians = kPi / 180.0f;
 
 // Too large a factor stays so, for the check of the product to find.
@@ -25,8 +24,7 @@ Light make_sun(const SunOptions& options) {
     sun.name = "--sun-direction";
     sun.shape = LightShape::sun;
     sun.direction = unit_or(*options.direction, Vec3{});
-    const double lux = options.illuminance > 0.0 ? options.illuminance : kDefaultSunIlluminance;
-    sun.intensity = options.color * single(lux);
+    sun.intensity = options.color * single(options.illuminance);
     sun.angular_diameter = static_cast<float>(options.angle_degrees) * kRadians;
     return sun;
 }

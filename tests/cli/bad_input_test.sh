@@ -121,6 +121,7 @@ expect 1 --sky-intensity bake ok.gltf -o out "${quick[@]}" --sky 1,1,1 --sky-int
 expect 1 --sky-intensity render ok.gltf -o v.png --sky 1,1,1 --sky-intensity 3e38
 expect 1 side.lumel.json bake side.gltf -o out "${quick[@]}"
 expect 1 --sky bake dark.gltf -o out "${quick[@]}"
+expect 1 --sky bake dark.gltf -o out "${quick[@]}" --sun-direction 0,-1,0 --sun-illuminance 0
 expect 1 text.glb bake ok.gltf -o out "${quick[@]}" --sky text.glb
 expect 1 --max-memory bake ok.gltf -o out "${quick[@]}" --max-memory 1K
 # What it says it needs is enough, and is not exceeded.
