@@ -92,7 +92,8 @@ void LightOptions::declare(CLI::App& app) {
     app.add_option("--sky-intensity", values_.sky.intensity, "Times the sky: nits per unit")
         ->check(not_negative())
         ->group(group);
-    app.add_option("--sky-rotation", values_.sky.rotation_degrees, "Degrees about +Y, on top of the sidecar's")
+    app.add_option("--sky-rotation", values_.sky.rotation_degrees,
+                   "Degrees about +Y of a sky map, on top of the sidecar's")
         ->check(between(-360.0, 360.0))
         ->group(group);
     app.add_option("--sky-blur", values_.sky.blur_degrees,

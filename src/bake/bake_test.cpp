@@ -129,13 +129,51 @@ TEST(Bake, AnySplitOfTheTexelsGivesTheSameBits) {
 
 TEST(Lighting, SkyIntensityAndRotationActOnTheScenesOwnSky) {
     Scene scene = test::room();
-    scene.sky.rotation = 0.25f;
     BakeOptions options;
     options.sky.intensity = 2;
-    options.sky.rotation_degrees = 90;
     ASSERT_TRUE(apply_lighting(scene, options).ok());
     EXPECT_EQ(scene.sky.color, (Vec3{0.8f, 1.2f, 2.0f}));
+
+    scene.sky.map = SkyMap{2, 1, {Vec3{1, 2, 3}, Vec3{4, 5, 6}}};
+    scene.sky.rotation = 0.25f;
+    options.sky.rotation_degrees = 90;
+    ASSERT_TRUE(apply_lighting(scene, options).ok());
+    EXPECT_EQ(scene.sky.map->radiance[1], (Vec3{8, 10, 12}));
     EXPECT_FLOAT_EQ(scene.sky.rotation, 0.25f + 1.57079633f);
+}
+
+TEST(Lighting, SkyOptionsWithoutASkyToActOnAreUsageErrors) {
+    const SkyMap map{2, 1, {Vec3{1, 1, 1}, Vec3{1, 1, 1}}};
+    struct Case {
+        const char* option;
+        void (*set)(SkyOptions&);
+        bool constant_will_do;
+    };
+    const Case cases[] = {
+        {"--sky-intensity", [](SkyOptions& sky) { sky.intensity = 3; }, true},
+        {"--sky-rotation", [](SkyOptions& sky) { sky.rotation_degrees = 10; }, false},
+        {"--sky-blur", [](SkyOptions& sky) { sky.blur_degrees = 10; }, false},
+        {"--sky-extract-sun", [](SkyOptions& sky) { sky.extract_sun = true; }, false},
+    };
+    for (const Case& c : cases) {
+        BakeOptions options;
+        c.set(options.sky);
+        const auto names_the_option = [&](const Status& status) {
+            return !status.ok() && status.error().code == ErrorCode::usage &&
+                   status.error().message.find(c.option) == 0;
+        };
+        Scene none = test::room();
+        none.sky = {};
+        EXPECT_TRUE(names_the_option(apply_lighting(none, options))) << c.option;
+        Scene constant = test::room();  // of the scene, then of the options
+        EXPECT_EQ(apply_lighting(constant, options).ok(), c.constant_will_do) << c.option;
+        options.sky.color = Vec3{1, 1, 1};
+        EXPECT_EQ(apply_lighting(none, options).ok(), c.constant_will_do) << c.option;
+        if (options.sky.extract_sun) continue;  // this map has none
+        options.sky.color.reset();
+        none.sky.map = map;
+        EXPECT_TRUE(apply_lighting(none, options).ok()) << c.option;
+    }
 }
 
 TEST(Lighting, TheOptionsSkyReplacesTheScenes) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <string>
 
 #include "base/try.h"
 #include "light/light_set.h"
@@ -29,6 +30,21 @@ Light make_sun(const SunOptions& options) {
     return sun;
 }
 
+// Options that act on a sky, where there is none that they could act on.
+Status check_sky_options(const Sky& sky, const SkyOptions& options) {
+    const auto needs = [](const char* option, const char* what, const char* remedy) {
+        return Error{ErrorCode::usage, std::string(option) + " needs a " + what, {}, remedy};
+    };
+    constexpr const char* kGiveMap =
+        "give one with --sky FILE, or in the sidecar: a constant sky looks the same anyway";
+    if (options.intensity != 1.0 && !options.color && sky.is_black())
+        return needs("--sky-intensity", "sky", "give one with --sky, or in the sidecar");
+    if (options.rotation_degrees != 0.0 && !sky.map) return needs("--sky-rotation", "sky map", kGiveMap);
+    if (options.blur_degrees != 0.0 && !sky.map) return needs("--sky-blur", "sky map", kGiveMap);
+    if (options.extract_sun && !sky.map) return needs("--sky-extract-sun", "sky map", "give one with --sky FILE");
+    return success();
+}
+
 void scale(Sky& sky, float factor) {
     sky.color *= factor;
     if (sky.map)
@@ -42,12 +58,11 @@ Status apply_lighting(Scene& scene, const BakeOptions& options) {
         scene.sky = {};
         scene.sky.color = *options.sky.color;
     }
+    LUMEL_TRY_STATUS(check_sky_options(scene.sky, options.sky));
     scale(scene.sky, single(options.sky.intensity));
     scene.sky.rotation += static_cast<float>(options.sky.rotation_degrees) * kRadians;
     LUMEL_TRY_STATUS(validate_lighting(scene));
     if (options.sky.extract_sun) {
-        if (!scene.sky.map)
-            return Error{ErrorCode::usage, "--sky-extract-sun needs a sky map", {}, "give one with --sky FILE"};
         LUMEL_TRY(ExtractedSun extracted, extract_sun(*scene.sky.map));
         scene.sky.map = std::move(extracted.sky);
         // The map's frame turned into the world's.

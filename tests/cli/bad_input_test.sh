@@ -92,6 +92,12 @@ for pair in --sun-angle=1 --sun-color=1,1,1 --sun-illuminance=5; do
     expect 2 --sun-direction bake ok.gltf -o x "${quick[@]}" "$pair"
     expect 2 --sun-direction render ok.gltf -o v.png "$pair"
 done
+for pair in --sky-rotation=90 --sky-blur=5 --sky-intensity=2; do
+    expect 2 "${pair%%=*} needs a sky" bake ok.gltf -o x "${quick[@]}" "$pair"
+    expect 2 "${pair%%=*} needs a sky" render ok.gltf -o v.png "$pair"
+done
+expect 2 '--sky-blur needs a sky map' bake ok.gltf -o x "${quick[@]}" --sky 1,1,1 --sky-blur 5
+expect 0 '' bake ok.gltf -o x "${quick[@]}" --sky 1,1,1 --sky-intensity 2
 for pair in --error=0.1 --confidence=0.9; do
     expect 2 '--stop flux' bake ok.gltf -o x "${quick[@]}" "$pair"
     expect 0 '' bake ok.gltf -o x "${quick[@]}" --stop flux "$pair"
