@@ -12,8 +12,9 @@ namespace lumel::cli {
 enum Exit : int { kDone = 0, kFailed = 1, kUsage = 2 };
 inline constexpr const char* kCancelledText = "lumel: error: cancelled, nothing was written";
 
-// Prints "lumel: error: ..." and returns the exit code of the error.
-int fail(const Error& error);
+// Prints "lumel: error: ..." and returns the exit code of the error. Faults of usage that come without advice get that
+// of the command's --help.
+int fail(const Error& error, const std::string& command);
 
 // A subcommand: `add` declares its options on the app and returns what runs when it was chosen.
 using Run = std::function<int()>;

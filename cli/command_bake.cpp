@@ -226,7 +226,7 @@ Run add_bake(CLI::App& app) {
     declare_progress(app, options->progress);
     return [options] {
         const Status status = run(*options);
-        return status.ok() ? static_cast<int>(kDone) : fail(status.error());
+        return status.ok() ? static_cast<int>(kDone) : fail(status.error(), "bake");
     };
 }
 

@@ -105,7 +105,7 @@ Run add_compare(CLI::App& app) {
     app.add_flag("--json", options->json, "Figures as JSON on standard output");
     return [options] {
         const Result<ImageMetrics> metrics = measure(*options);
-        if (!metrics.ok()) return fail(metrics.error());
+        if (!metrics.ok()) return fail(metrics.error(), "compare");
         if (options->json)
             std::printf("%s\n", to_json(*metrics).dump(1).c_str());
         else

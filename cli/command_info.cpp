@@ -19,7 +19,7 @@ Run add_info(CLI::App& app) {
     return [options] {
         Context context(1);
         const Result<LoadedScene> loaded = load_scene(options->scene, context);
-        if (!loaded.ok()) return fail(loaded.error());
+        if (!loaded.ok()) return fail(loaded.error(), "info");
         const std::string text = options->json ? describe_json(loaded->scene, context.diagnostics)
                                                : describe(loaded->scene, context.diagnostics);
         std::fputs(text.c_str(), stdout);

@@ -1,7 +1,34 @@
 // lumel: command-line baker for glTF scenes. Exit codes: 0 done, 1 failed, 2 usage.
+#include <algorithm>
+#include <string_view>
 #include <vector>
 
 #include "command.h"
+
+namespace lumel::cli {
+namespace {
+
+// What the parser did not understand, as one line like any other error.
+int usage_error(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
+    const std::vector<CLI::App*> parsed = app.get_subcommands();
+    if (!parsed.empty()) {
+        std::string message = error.what();
+        if (message.starts_with("The ")) message.front() = 't';  // what is not the name of an argument
+        return fail({ErrorCode::usage, std::move(message), {}, {}}, parsed.front()->get_name());
+    }
+    // The parser would only say that there is no command.
+    char** const word = std::find_if(argv + 1, argv + argc, [](std::string_view a) { return !a.starts_with('-'); });
+    std::string commands;
+    for (const CLI::App* command : app.get_subcommands({}))
+        commands += (commands.empty() ? "" : ", ") + command->get_name();
+    const std::string message = word != argv + argc ? "there is no command '" + std::string(*word) + "'"
+                                : argc > 1 ? "there is no option '" + std::string(argv[1]) + "' without a command"
+                                           : "a command is missing";
+    return fail({ErrorCode::usage, message, {}, "commands: " + commands + "; see lumel --help"}, {});
+}
+
+}  // namespace
+}  // namespace lumel::cli
 
 int main(int argc, char** argv) {
     using namespace lumel::cli;
@@ -27,7 +54,8 @@ int main(int argc, char** argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? kDone : kUsage;  // --help and --version come this way too
+        if (error.get_exit_code() != 0) return usage_error(app, error, argc, argv);
+        return app.exit(error);  // --help and --version come this way too
     }
     for (const Command& command : commands)
         if (command.app->parsed()) return command.run();

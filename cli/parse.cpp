@@ -17,6 +17,19 @@ Error usage(const std::string& option, const std::string& text, const std::strin
     return {ErrorCode::usage, option + ": '" + text + "' is not " + expected, {}, {}};
 }
 
+// A name that looks like one of a map was meant as one.
+Status check_sky_file(const std::filesystem::path& path) {
+    std::error_code ignored;
+    if (std::filesystem::status(path, ignored).type() != std::filesystem::file_type::not_found) return success();
+    const std::filesystem::path extension = path.extension();
+    if (extension == ".hdr" || extension == ".exr")
+        return Error{ErrorCode::io, "--sky: there is no such file", path.string(), "check the path"};
+    return Error{ErrorCode::usage,
+                 "--sky: '" + path.string() + "' is neither three numbers such as 0.7,0.9,1.3 nor a file",
+                 {},
+                 {}};
+}
+
 }  // namespace
 
 CLI::Validator between(double low, double high) {
@@ -148,9 +161,7 @@ Status LightOptions::read(BakeOptions& out) const {
             if (color->x < 0 || color->y < 0 || color->z < 0) return usage("--sky", sky_, "a radiance of zero or more");
             out.sky.color = *color;
         } else {
-            std::error_code ignored;
-            if (sky_.find(',') != std::string::npos && !std::filesystem::exists(sky_, ignored))
-                return usage("--sky", sky_, "three numbers such as 0.7,0.9,1.3, nor the name of a file");
+            LUMEL_TRY_STATUS(check_sky_file(sky_));
             out.sky.file = sky_;
         }
     }

@@ -134,11 +134,14 @@ void RunContext::finish() {
     }
 }
 
-int fail(const Error& error) {
+int fail(const Error& failure, const std::string& command) {
+    Error error = failure;
     if (error.code == ErrorCode::cancelled) {
         std::fprintf(stderr, "%s\n", kCancelledText);
         return kFailed;
     }
+    if (error.code == ErrorCode::usage && error.remedy.empty())
+        error.remedy = "see lumel " + (command.empty() ? "" : command + " ") + "--help";
     std::fprintf(stderr, "lumel: error: %s\n", error.text().c_str());
     return error.code == ErrorCode::usage ? kUsage : kFailed;
 }

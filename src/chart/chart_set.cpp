@@ -99,8 +99,9 @@ private:
             const std::string reason = judge_uv1_coordinates(mesh(m), topology_[m].area);
             if (reason.empty()) continue;
             if (!asked) return no_atlas(node_and_mesh(scene_, used_.instance[m]) + ": " + reason);
-            return Error{ErrorCode::usage, "TEXCOORD_1 cannot be kept as one atlas of the scene: " + reason,
-                         node_and_mesh(scene_, used_.instance[m]), "use --uv1 mesh or --uv1 ignore"};
+            return Error{
+                ErrorCode::usage, "--uv1 scene: TEXCOORD_1 cannot be kept as one atlas of the scene: " + reason,
+                scene_.source + ": " + node_and_mesh(scene_, used_.instance[m]), "use --uv1 mesh or --uv1 ignore"};
         }
         if (used_.repeated != kNone && !asked)  // would overlap itself: no need to search
             return no_atlas(node_and_mesh(scene_, used_.repeated) + " shares its mesh with another node");

@@ -67,9 +67,34 @@ expect 0 '' bake ok.gltf -o out "${quick[@]}"
 expect 0 '' bake ok.gltf -o out/ "${quick[@]}" --sky 1,1,1
 before=$(cat out/* | cksum)
 
-expect 2 --frobnicate bake ok.gltf -o x --frobnicate
-expect 2 SCENE bake
-expect 2 --output bake ok.gltf
+# Every error is one line that begins the same.
+usage() {
+    expect 2 "$@"
+    [ "$(wc -l <err.txt)" = 1 ] && grep -q '^lumel: error: ' err.txt || complain "lumel ${*:2}: says $(cat err.txt)"
+    [ -s out.txt ] && complain "lumel ${*:2}: standard output has $(cat out.txt)"
+    grep -q -- '--help' err.txt || complain "lumel ${*:2}: does not point to --help: $(cat err.txt)"
+}
+usage 'a command is missing'
+usage "'foo'" foo
+usage "'foo'" foo --json
+usage "'--frobnicate'" --frobnicate
+usage --frobnicate bake ok.gltf -o x --frobnicate
+usage 'lumel bake --help' bake ok.gltf -o x --frobnicate
+usage SCENE bake
+usage --output bake ok.gltf
+usage ultra bake ok.gltf -o x --preset ultra
+usage --resolution bake ok.gltf -o x --resolution 3
+usage --sun-direction bake ok.gltf -o x --sun-angle 1
+usage "--sky: 'blue'" bake ok.gltf -o x --sky blue
+usage "--sky: '1,1'" render ok.gltf -o v.png --sky 1,1
+expect 1 'gone.hdr: --sky:' bake ok.gltf -o x --sky gone.hdr
+expect 2 "ok.gltf: node 'floor'" bake ok.gltf -o x "${quick[@]}" --uv1 scene
+expect 2 '--uv1 scene' bake ok.gltf -o x "${quick[@]}" --uv1 scene
+for arguments in --help --version 'bake --help'; do
+    # shellcheck disable=SC2086
+    "$lumel" $arguments >out.txt 2>err.txt || complain "lumel $arguments: exit code $?"
+    [ -s out.txt ] && [ ! -s err.txt ] || complain "lumel $arguments: says $(cat out.txt err.txt)"
+done
 for pair in --preset=ultra --samples=many --samples=-4 --sun-direction=1,2 --sun-direction=0,0,0 --include=light --include= \
     --sky=1,1 --sky=nan,1,1 --sky-intensity=nan --sky-intensity=inf --ao-distance=nan --ao-distance=inf --sun-direction=inf,0,0 \
     --texels-per-metre=inf --direct-scale=nan --indirect-scale=inf --texels-per-metre=nan --sky-rotation=nan --direct-scale=-1 \
