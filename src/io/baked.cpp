@@ -14,7 +14,7 @@
 namespace lumel {
 namespace {
 
-constexpr const char* kExtension = "LUMEL_lightmap";
+constexpr const char* kExtension = kLightmapExtension;
 constexpr std::uint64_t kMaxSceneFile = std::uint64_t{4} << 30;
 constexpr std::uint64_t kLargestPage = 16384;
 constexpr const char* kOtherScene = "give the scene that was baked, with the same sidecar";

@@ -9,6 +9,7 @@
 #include "base/try.h"
 #include "io/data_uri.h"
 #include "io/image_io.h"
+#include "io/page_files.h"
 
 namespace lumel {
 namespace {
@@ -46,7 +47,7 @@ constexpr std::array<std::string_view, 30> kKnownExtensions{"KHR_lights_punctual
                                                             "EXT_lights_image_based",
                                                             "MSFT_lod",
                                                             "MOZ_lightmap",
-                                                            "LUMEL_lightmap"};
+                                                            kLightmapExtension};
 
 std::uint32_t read_u32(std::span<const std::byte> bytes, std::size_t at) {
     std::uint32_t value = 0;

@@ -29,7 +29,7 @@ struct LoadedScene {
 // Reads .glb or .gltf (external or embedded buffers and images), then `<scene>.lumel.json` beside it where present.
 // Errors name file, object and remedy; never crashes or takes more than bounded time and memory on hostile bytes.
 // Diagnostics: "skipped-primitive" (points, lines), "missing-normals", "ignored-extension", "diffuse-transmission",
-// "zero-length-normal", "node-class" (nodes not lightmapped, and why).
+// "zero-length-normal", "node-class" (nodes not lightmapped, and why), "already-baked" (a scene.glb of ours).
 Result<LoadedScene> load_scene(const std::filesystem::path& path, Context& context);
 
 // The bytes of a .glb (fuzz target; external files are refused).

@@ -20,7 +20,7 @@
 namespace lumel {
 namespace {
 
-constexpr const char* kExtension = "LUMEL_lightmap";
+constexpr const char* kExtension = kLightmapExtension;
 constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
 constexpr const char* kLights = "KHR_lights_punctual";
 

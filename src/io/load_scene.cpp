@@ -11,6 +11,7 @@
 #include "io/gltf_nodes.h"
 #include "io/image_io.h"
 #include "io/node_class.h"
+#include "io/page_files.h"
 #include "io/sidecar.h"
 #include "scene/world_geometry.h"
 
@@ -62,6 +63,7 @@ public:
         LUMEL_TRY_STATUS(apply_sky(sidecar_, document_.base_directory(), scene_.sky));
         LUMEL_TRY_STATUS(place_instances());
         note_unknown_extensions();
+        note_baked_light();
         LUMEL_TRY_STATUS(validate(scene_));
         return std::move(scene_);
     }
@@ -181,6 +183,14 @@ private:
             if (name.is_string() && !is_known_extension(name.get_ref<const std::string&>()))
                 context_.diagnostics.add("ignored-extension", "These extensions were ignored",
                                          name.get_ref<const std::string&>());
+    }
+
+    void note_baked_light() {
+        if (find_extension(document_.root, kLightmapExtension))
+            context_.diagnostics.add("already-baked",
+                                     "This is what a bake wrote: its surfaces emit the light that was baked, and would "
+                                     "light each other with it again; give the scene that was baked",
+                                     document_.where);
     }
 
     GltfDocument& document_;

@@ -197,6 +197,14 @@ TEST(LoadScene, NotesExtensionsItDoesNotKnow) {
     EXPECT_EQ(loaded.notes("ignored-extension"), 1u);
 }
 
+TEST(LoadScene, NotesThatAFileIsTheOutputOfABake) {
+    GltfBuilder builder;
+    builder.triangle_node();
+    EXPECT_EQ(Loaded(builder).notes("already-baked"), 0u);
+    builder.root["extensions"]["LUMEL_lightmap"] = {{"version", 1}};
+    EXPECT_EQ(Loaded(builder).notes("already-baked"), 1u);
+}
+
 TEST(Info, TellsWhatThereIs) {
     const Loaded loaded(everything());
     ASSERT_TRUE(loaded.result.ok()) << loaded.error();

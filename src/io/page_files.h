@@ -13,6 +13,9 @@ inline constexpr const char* kManifestFile = "manifest.json";
 inline constexpr const char* kReportFile = "report.json";
 inline constexpr const char* kViewStem = "preview_view_";  // preview_view_0.png: the truth beside the bake
 
+// What marks scene.glb as ours, its nodes and primitives too (docs/formats.md).
+inline constexpr const char* kLightmapExtension = "LUMEL_lightmap";
+
 // What is written for each page.
 enum class PageFile : std::uint8_t {
     lightmap,         // I = E/pi over the included layers

@@ -67,6 +67,9 @@ expect 0 '' bake ok.gltf -o out "${quick[@]}"
 expect 0 '' bake ok.gltf -o out/ "${quick[@]}" --sky 1,1,1
 before=$(cat out/* | cksum)
 
+expect 0 '[already-baked, 1]: out/scene.glb' bake out/scene.glb -o twice "${quick[@]}"
+grep -q already-baked twice/report.json || complain 'the report does not say that lit output was baked again'
+
 # Every error is one line that begins the same.
 usage() {
     expect 2 "$@"
