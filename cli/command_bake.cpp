@@ -13,6 +13,7 @@
 #include "interrupt.h"
 #include "io/bake_writer.h"
 #include "io/baked.h"
+#include "io/page_files.h"
 #include "load.h"
 #include "path/path_integrator.h"
 #include "render/picture.h"
@@ -110,6 +111,14 @@ std::uint64_t memory_for_views(const BakeOptions& options, const BakeReport& rep
     return most;
 }
 
+// Where to look first.
+void print_files(const std::filesystem::path& folder, std::uint32_t views) {
+    std::printf("lit scene: %s\npictures: ", (folder / kSceneFile).c_str());
+    if (views > 0)
+        std::printf("%s (path-traced beside baked), ", (folder / (kViewStem + std::string("*.png"))).c_str());
+    std::printf("%s\n", (folder / "preview_atlas_*.png").c_str());
+}
+
 void print_summary(const BakeReport& report, const std::string& folder) {
     std::printf("%s: %llu texels on %zu page%s, %llu charts", folder.c_str(),
                 static_cast<unsigned long long>(report.texels), report.pages.size(),
@@ -166,6 +175,7 @@ Status run(const Options& options) {
     LUMEL_TRY_STATUS(writer.commit());
     run_context.finish();
     print_summary(report, options.output);
+    print_files(options.output, options.views);
     return success();
 }
 

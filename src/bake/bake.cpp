@@ -105,6 +105,8 @@ struct Totals {
             }
         }
     }
+    [[nodiscard]] bool is_black() const { return irradiance[0] + irradiance[1] + irradiance[2] == 0.0; }
+
     void store(BakeReport& report) const {
         if (texels == 0) return;
         const double n = static_cast<double>(texels);
@@ -221,6 +223,12 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
         report.invalid_texels += page.invalid;
     }
     totals.store(report);
+    if (report.texels > 0 && totals.is_black())
+        context.diagnostics.add(
+            "no-light",
+            "No light of the included layers reaches any texel: the bake is black; look at where the "
+            "lights are and point, at what stands in their way, and at --include",
+            scene.source);
     const TraceStatistics statistics = tracer->statistics();
     report.rays = statistics.rays;
     report.tracer_seconds = statistics.seconds;

@@ -243,6 +243,21 @@ TEST(Bake, NoLightIsAnErrorThatNamesTheRemedy) {
     EXPECT_NE(result.error().text().find("--sky"), std::string::npos);
 }
 
+// A lamp above the floor, and one below it, whose light does not get through.
+TEST(Bake, WarnsWhereNoLightReachesAnyTexel) {
+    for (const float height : {1.0f, -1.0f}) {
+        test::SceneBuilder b;
+        const auto white = b.material({0.8f, 0.8f, 0.8f});
+        b.object("floor", white, [](Mesh& m) { test::add_quad(m, {0, 0, 0}, {0, 0, 1}, {1, 0, 0}); });
+        b.light(LightShape::point).position = {0.5f, height, 0.5f};
+        Context context(1);
+        BakeSink sink{[](const auto&, const auto&, const auto&) { return success(); },
+                      [](const auto&) { return success(); }};
+        ASSERT_TRUE(bake(b.build(), small_options(), sink, context).ok());
+        EXPECT_EQ(context.diagnostics.count("no-light"), height < 0.0f ? 1u : 0u);
+    }
+}
+
 BakeSink no_sink() {
     return {[](const auto&, const auto&, const auto&) { return success(); }, [](const auto&) { return success(); }};
 }

@@ -183,6 +183,11 @@ std::string materials_text(const Scene& scene) {
            std::to_string(blend) + " blend, " + std::to_string(two_sided) + " double-sided";
 }
 
+bool has_emitters(const Summary& summary) {
+    return std::any_of(summary.emitters.begin(), summary.emitters.end(),
+                       [](const Emitter& e) { return e.triangles > 0; });
+}
+
 void emitters_text(const Scene& scene, const Summary& summary, std::string& out) {
     for (std::size_t i = 0; i < summary.emitters.size(); ++i) {
         if (summary.emitters[i].triangles == 0) continue;
@@ -286,8 +291,11 @@ std::string describe(const Scene& scene, const Diagnostics& diagnostics) {
     line(out, "UV 0", std::to_string(summary.with_uv0) + " of " + std::to_string(scene.meshes.size()) + " meshes");
     line(out, "UV 1", uv1_state(scene, summary));
     line(out, "sky", sky_text(scene.sky));
+    if (scene.lights.empty()) line(out, "light", "none");
     for (const Light& light : scene.lights) line(out, "light", light_text(light));
     emitters_text(scene, summary, out);
+    if (scene.lights.empty() && scene.sky.is_black() && !has_emitters(summary))
+        line(out, "note", "nothing emits light: a bake needs --sky or --sun-direction");
     for (const Camera& camera : scene.cameras)
         line(out, "camera",
              "'" + camera.name + "' at " + triple(camera.transform.translation) + ", " +

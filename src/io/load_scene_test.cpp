@@ -218,6 +218,20 @@ TEST(Info, TellsWhatThereIs) {
     EXPECT_EQ(json["bounds"]["max"][0], 15.0) << "corner 1 was moved to (5,5,5), the second instance by 10";
 }
 
+TEST(Info, SaysThatThereIsNoLight) {
+    GltfBuilder builder;
+    builder.triangle_node();
+    const auto told = [&] {
+        const Loaded loaded(builder);
+        const std::string text = describe(loaded.scene(), loaded.context.diagnostics);
+        return std::pair(text.find("light      none") != std::string::npos, text.find("--sky") != std::string::npos);
+    };
+    EXPECT_EQ(told(), std::pair(true, true));
+    builder.root["meshes"][0]["primitives"][0]["material"] = 0;
+    builder.add("materials", {{"emissiveFactor", {1, 0.5, 0}}});
+    EXPECT_EQ(told(), std::pair(true, false)) << "the triangle shines";
+}
+
 TEST(Info, MeasuresEmitters) {
     GltfBuilder builder;
     builder.triangle_node();

@@ -70,6 +70,15 @@ before=$(cat out/* | cksum)
 expect 0 '[already-baked, 1]: out/scene.glb' bake out/scene.glb -o twice "${quick[@]}"
 grep -q already-baked twice/report.json || complain 'the report does not say that lit output was baked again'
 
+# What a bake says at its end: where to look, and that nothing is to be seen.
+expect 0 '' bake ok.gltf -o lit/ "${quick[@]}" --sky 1,1,1
+grep -qx 'lit scene: lit/scene.glb' out.txt || complain "the summary does not name the scene: $(cat out.txt)"
+grep -q '^pictures: lit/preview_atlas_' out.txt || complain "the summary does not name the pictures: $(cat out.txt)"
+grep -q no-light lit/report.json && complain 'a lit bake is said to be black'
+sed 's/"translation":\[0,2,0\]/"translation":[0,-2,0]/' ok.gltf >below.gltf
+expect 0 '[no-light, 1]: below.gltf' bake below.gltf -o below "${quick[@]}"
+"$lumel" info dark.gltf | grep -q 'light *none' || complain 'info does not say that there is no light'
+
 # Every error is one line that begins the same.
 usage() {
     expect 2 "$@"
