@@ -7,6 +7,7 @@
 
 #include "bake/memory.h"
 #include "bake/stage_timer.h"
+#include "base/progress_parts.h"
 #include "base/try.h"
 #include "command.h"
 #include "image/tonemap.h"
@@ -31,6 +32,7 @@ struct Options {
 };
 
 constexpr std::uint32_t kViewWidth = 384, kViewHeight = 216;
+constexpr double kLitPictureWork = 0.1;   // of that of a path-traced one: camera rays, where all surfaces have texels
 constexpr std::uint32_t kViewGutter = 4;  // pixels between truth and bake
 
 Result<BakeOptions> read_options(const Options& options) {
@@ -93,8 +95,11 @@ Status write_views(BakeWriter& writer, const Scene& scene, const BakeOptions& op
     const BakedLight light = light_of(baked);
     const PathOptions path = transport_options(options);
     LUMEL_TRY(const std::vector<Camera> views, choose_views(transport, count, context));
+    ProgressParts progress(context, "views", static_cast<double>(views.size()) * (1.0 + kLitPictureWork));
     for (std::size_t k = 0; k < views.size(); ++k) {
+        progress.begin(1.0);
         LUMEL_TRY(const Image truth, render_picture(transport, path, views[k], picture, nullptr, context));
+        progress.begin(kLitPictureWork);
         LUMEL_TRY(const Image lit, render_picture(transport, path, views[k], picture, &light, context));
         LUMEL_TRY_STATUS(
             writer.write_view(k, 2 * picture.width + kViewGutter, picture.height, side_by_side(truth, lit)));

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "base/progress_parts.h"
 #include "base/try.h"
 #include "math/constants.h"
 #include "math/sampler.h"
@@ -192,9 +193,11 @@ Result<Image> render_picture(const Transport& transport, const PathOptions& path
         tracer = std::make_unique<PixelTracer>(transport, integrator, path, lens, options, baked);
     const std::uint32_t parts = baked ? baked->parts : 1;
     std::vector<float> light_scale(parts > 1 ? image.data.size() / 3 : 0);
-    const std::uint64_t rays_before = transport.tracer.statistics().rays;
+    ProgressParts progress(context, "render", parts);
     for (std::uint32_t part = 0; part < parts; ++part) {
+        progress.begin(1.0);
         if (baked && baked->load) LUMEL_TRY_STATUS(baked->load(part));
+        const std::uint64_t rays_before = transport.tracer.statistics().rays;
         const bool done = parallel_for(
             context, std::size_t{options.width} * options.height, 32,
             [&](const ChunkRange& range) {

@@ -79,6 +79,15 @@ sed 's/"translation":\[0,2,0\]/"translation":[0,-2,0]/' ok.gltf >below.gltf
 expect 0 '[no-light, 1]: below.gltf' bake below.gltf -o below "${quick[@]}"
 "$lumel" info dark.gltf | grep -q 'light *none' || complain 'info does not say that there is no light'
 
+# The pictures of a bake are one stage, whose progress never falls.
+expect 0 '"stage":"views","fraction":1.0000' bake ok.gltf -o views --preset preview --samples 1 \
+    --resolution 32x32 --views 2 --view-samples 256 --progress json
+grep -F '"stage":"views"' err.txt | sed 's/.*"fraction":\([0-9.]*\).*"rays":\([0-9]*\).*/\1 \2/' >views.txt
+[ "$(wc -l <views.txt)" -gt 2 ] || complain "progress of views is: $(cat views.txt)"
+awk '$1 < fraction || $2 < rays { exit 1 } { fraction = $1; rays = $2 }' views.txt ||
+    complain "progress of views falls: $(cat views.txt)"
+grep -q '"stage":"render"' err.txt && complain 'pictures of a bake report for themselves'
+
 # Every error is one line that begins the same.
 usage() {
     expect 2 "$@"
