@@ -23,6 +23,9 @@ namespace lumel {
 Result<Image> read_image(const std::filesystem::path& path);
 Result<Image> decode_image(std::span<const std::byte> bytes, const std::string& where);
 
+// Whether read_image would give 8-bit codes (PNG, JPEG, PGM), which need not be proportional to light, and not floats.
+Result<bool> is_eight_bit_image(const std::filesystem::path& path);
+
 // PNG or JPEG to 8-bit RGBA for a Scene texture. Errors name `where`; textures above 8192 x 8192 are refused.
 Result<Texture> decode_texture(std::span<const std::byte> bytes, const std::string& where, bool srgb);
 

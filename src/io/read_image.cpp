@@ -1,7 +1,9 @@
 // Which decoder reads an image, and the sky, the one image with rules of its own.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
+#include <fstream>
 #include <string_view>
 
 #include "base/try.h"
@@ -79,6 +81,15 @@ Result<Image> decode_image(std::span<const std::byte> bytes, const std::string& 
 Result<Image> read_image(const std::filesystem::path& path) {
     LUMEL_TRY(const std::vector<std::byte> bytes, read_file(path, kMaxImageFile));
     return decode_image(bytes, path.string());
+}
+
+Result<bool> is_eight_bit_image(const std::filesystem::path& path) {
+    std::array<char, 16> head{};
+    std::ifstream in(path, std::ios::binary);
+    in.read(head.data(), head.size());
+    if (in.bad() || in.gcount() == 0) return Error{ErrorCode::io, "cannot be read", path.string(), "check the path"};
+    const ImageFormat format = image_format(std::as_bytes(std::span(head)));
+    return format == ImageFormat::png || format == ImageFormat::jpeg || format == ImageFormat::pgm;
 }
 
 Result<NamedChannels> read_exr_channels(const std::filesystem::path& path, std::span<const std::string> names) {

@@ -29,6 +29,21 @@ std::string hdr(const std::string& size, const std::string& pixels) {
 // Mantissa 128 and exponent 129 are 128 * 2^(129 - 136) = 1.
 const std::string kOne{"\x80\x40\x20\x81", 4};
 
+TEST(ReadImage, TellsCodesFromRadiance) {
+    const test::TemporaryFolder folder;
+    const Image image(2, 2, 3);
+    const std::vector<std::uint8_t> pixels(12);
+    ASSERT_TRUE(write_exr(folder / "a.png", image, ExrType::half).ok());  // the content decides
+    ASSERT_TRUE(write_pfm(folder / "b", image).ok() && write_hdr(folder / "c", image).ok());
+    ASSERT_TRUE(write_png(folder / "d", 2, 2, 3, pixels).ok());
+    for (const char* name : {"a.png", "b", "c", "d"}) {
+        const auto eight_bit = is_eight_bit_image(folder / name);
+        ASSERT_TRUE(eight_bit.ok()) << name;
+        EXPECT_EQ(*eight_bit, *name == 'd') << name;
+    }
+    EXPECT_FALSE(is_eight_bit_image(folder / "gone").ok());
+}
+
 TEST(DecodeHdr, ReadsFlatPixels) {
     const auto image = decode(hdr("-Y 2 +X 1", kOne + std::string("\x01\x02\x03\x00", 4)));
     ASSERT_TRUE(image.ok()) << image.error().text();

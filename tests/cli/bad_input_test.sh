@@ -79,6 +79,21 @@ sed 's/"translation":\[0,2,0\]/"translation":[0,-2,0]/' ok.gltf >below.gltf
 expect 0 '[no-light, 1]: below.gltf' bake below.gltf -o below "${quick[@]}"
 "$lumel" info dark.gltf | grep -q 'light *none' || complain 'info does not say that there is no light'
 
+# Radiance and a tone-mapped picture of it.
+for kind in png exr pfm; do
+    expect 0 '' render ok.gltf -o view.$kind --samples 1 --resolution 16x16
+done
+for pair in 'view.exr view.png' 'view.png view.pfm'; do
+    # shellcheck disable=SC2086
+    expect 0 mixed-kinds compare $pair --json
+    grep -q nrmse out.txt || complain "compare $pair: standard output is $(cat out.txt)"
+done
+for pair in 'view.exr view.pfm' 'view.png view.png'; do
+    # shellcheck disable=SC2086
+    "$lumel" compare $pair >out.txt 2>err.txt || complain "compare $pair: exit code $?"
+    [ -s err.txt ] && complain "compare $pair: says $(cat err.txt)"
+done
+
 # The pictures of a bake are one stage, whose progress never falls.
 expect 0 '"stage":"views","fraction":1.0000' bake ok.gltf -o views --preset preview --samples 1 \
     --resolution 32x32 --views 2 --view-samples 256 --progress json
