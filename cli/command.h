@@ -4,7 +4,9 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <string>
+#include <vector>
 
+#include "io/light_record.h"
 #include "lumel/lumel.h"
 
 namespace lumel::cli {
@@ -47,8 +49,13 @@ public:
     void declare(CLI::App& app);
     // Fills sky, sun, include, scales, samples, bounces, seed, threads.
     Status read(BakeOptions& options) const;
+    // Where none of sky and sun was given, takes those of a bake; so, each by itself, include and the scales. Returns
+    // what was taken as it would be given: empty where that makes no difference.
+    std::string take_over(const LightRecord& bake, BakeOptions& options) const;
 
 private:
+    std::vector<const CLI::Option*> sky_and_sun_;
+    const CLI::Option *include_option_ = nullptr, *direct_scale_ = nullptr, *indirect_scale_ = nullptr;
     std::string sky_, sun_direction_, sun_color_ = "1,1,1", include_ = "direct,sky,indirect";
     BakeOptions values_;
 };

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <sstream>
 
 #include "base/try.h"
@@ -12,6 +13,7 @@
 #include "io/atomic_file.h"
 #include "io/baked.h"
 #include "io/image_io.h"
+#include "io/light_record.h"
 #include "load.h"
 #include "path/path_integrator.h"
 #include "render/picture.h"
@@ -88,16 +90,50 @@ Status write_picture(const std::string& path, const Image& image, double exposur
     return write_png(path, image.width, image.height, 3, tonemap(image, factor));
 }
 
+// The light that lit the bake, where the command line has no other.
+Status take_light_of_bake(const Options& options, const LightRecord& bake, BakeOptions& light) {
+    const bool own_sky = !light.sky.file.empty();
+    const std::string taken = options.light.take_over(bake, light);
+    std::error_code ignored;
+    if (!own_sky && !light.sky.file.empty() && !std::filesystem::exists(light.sky.file, ignored))
+        return Error{ErrorCode::io, "the sky map that lit the bake is not there any more", light.sky.file,
+                     "say where it is with --sky FILE and the bake's other options of light, which its manifest.json "
+                     "has, or go without by --sky 0,0,0"};
+    if (!taken.empty()) std::fprintf(stderr, "lumel: lit as the bake was: %s\n", taken.c_str());
+    return success();
+}
+
+// What is seen of the sky, and what has no texels, is not lit by the bake's files.
+void warn_of_other_light(const LightRecord& bake, const LoadedScene& loaded, const BakeOptions& light,
+                         Diagnostics& diagnostics) {
+    const auto warn = [&](const std::string& where) {
+        diagnostics.add("other-light",
+                        "These are not as they were when the scene was baked: the sky, and surfaces without texels, "
+                        "show another light than the baked ones; give the bake's options of light, or bake again",
+                        where);
+    };
+    if (!bake.sky_hash.empty() && !loaded.sky_hash.empty() && loaded.sky_hash != bake.sky_hash)
+        warn("sky map " + light.sky.file);
+    else if (hash_scene(loaded.scene).hex() != bake.input_hash)
+        warn("lights, sky or materials of " + loaded.scene.source);
+}
+
 Status run(const Options& options) {
     BakeOptions light;
     LUMEL_TRY_STATUS(options.light.read(light));
     LUMEL_TRY(const Size size, parse_size(options.resolution, "--resolution"));
     LUMEL_TRY_STATUS(check_output(options.output));
+    std::optional<LightRecord> bake;
+    if (!options.baked.empty()) {
+        LUMEL_TRY(bake, read_light_record(options.baked));
+        LUMEL_TRY_STATUS(take_light_of_bake(options, *bake, light));
+    }
     RunContext run_context(light.threads, options.progress);
     Context& context = run_context.get();
     run_context.interrupt().set_cleaner([&options] { remove_temporaries(options.output); });
     LUMEL_TRY(const LoadedScene loaded, load_lit_scene(options.scene, light, context));
     const Scene& scene = loaded.scene;
+    if (bake) warn_of_other_light(*bake, loaded, light, context.diagnostics);
     LUMEL_TRY(const WorldGeometry geometry, flatten(scene, context));
     const SurfaceReader surfaces(scene, geometry);
     const LightSet lights(scene, geometry, surfaces);

@@ -2,6 +2,7 @@
 
 #include "base/try.h"
 #include "io/image_io.h"
+#include "io/light_record.h"
 
 namespace lumel::cli {
 
@@ -10,6 +11,7 @@ Result<LoadedScene> load_lit_scene(const std::string& path, const BakeOptions& o
     if (!options.sky.file.empty()) {
         loaded.scene.sky = {};
         LUMEL_TRY(loaded.scene.sky.map, read_sky(options.sky.file));
+        LUMEL_TRY(loaded.sky_hash, hash_file(options.sky.file));
     }
     LUMEL_TRY_STATUS(apply_lighting(loaded.scene, options));
     return loaded;

@@ -1,8 +1,11 @@
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <limits>
 #include <sstream>
+#include <utility>
 
 #include "base/try.h"
 #include "command.h"
@@ -28,6 +31,54 @@ Status check_sky_file(const std::filesystem::path& path) {
                  "--sky: '" + path.string() + "' is neither three numbers such as 0.7,0.9,1.3 nor a file",
                  {},
                  {}};
+}
+
+// Options as they would be given.
+struct Words {
+    std::string text;
+
+    void add(const char* option, const std::string& value) {
+        text += (text.empty() ? "" : " ") + std::string(option) + (value.empty() ? "" : " " + value);
+    }
+    void add_unless(double usual, const char* option, double value) {
+        if (value != usual) add(option, number(value));
+    }
+    void add(const char* option, Vec3 v) { add(option, number(v.x) + "," + number(v.y) + "," + number(v.z)); }
+
+private:
+    // The shortest that is read as the same number.
+    template <class T>
+    static std::string number(T value) {
+        std::array<char, 32> digits{};
+        return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
+    }
+};
+
+void say(const SkyOptions& sky, Words& words) {
+    if (sky.color)
+        words.add("--sky", *sky.color);
+    else if (!sky.file.empty())
+        words.add("--sky", sky.file);
+    words.add_unless(1.0, "--sky-intensity", sky.intensity);
+    words.add_unless(0.0, "--sky-rotation", sky.rotation_degrees);
+    words.add_unless(0.0, "--sky-blur", sky.blur_degrees);
+    if (sky.extract_sun) words.add("--sky-extract-sun", std::string());
+}
+
+void say(const SunOptions& sun, Words& words) {
+    if (!sun.direction) return;
+    words.add("--sun-direction", *sun.direction);
+    words.add_unless(SunOptions{}.illuminance, "--sun-illuminance", sun.illuminance);
+    if (!(sun.color == Vec3{1, 1, 1})) words.add("--sun-colour", sun.color);
+    words.add_unless(0.0, "--sun-angle", sun.angle_degrees);
+}
+
+std::string names_of(const Include& include) {
+    std::string out;
+    for (const auto& [included, name] :
+         {std::pair{include.direct, "direct"}, {include.sky, "sky"}, {include.indirect, "indirect"}})
+        if (included) out += (out.empty() ? "" : ",") + std::string(name);
+    return out;
 }
 
 }  // namespace
@@ -99,41 +150,40 @@ Result<std::uint64_t> parse_bytes(const std::string& text, const std::string& op
 
 void LightOptions::declare(CLI::App& app) {
     const std::string group = "Light";
-    app.add_option("--sky", sky_, "Sky: radiance R,G,B, or an equirectangular .hdr or .exr file")
-        ->check(not_empty())
-        ->group(group);
-    app.add_option("--sky-intensity", values_.sky.intensity, "Times the sky: nits per unit")
+    const auto of_sky_and_sun = [&](CLI::Option* option) {
+        sky_and_sun_.push_back(option->group(group));
+        return option;
+    };
+    of_sky_and_sun(app.add_option("--sky", sky_, "Sky: radiance R,G,B, or an equirectangular .hdr or .exr file"))
+        ->check(not_empty());
+    of_sky_and_sun(app.add_option("--sky-intensity", values_.sky.intensity, "Times the sky: nits per unit"))
+        ->check(not_negative());
+    of_sky_and_sun(app.add_option("--sky-rotation", values_.sky.rotation_degrees,
+                                  "Degrees about +Y of a sky map, on top of the sidecar's"))
+        ->check(between(-360.0, 360.0));
+    of_sky_and_sun(app.add_option("--sky-blur", values_.sky.blur_degrees,
+                                  "Blur the sky map, keeping its energy: half width in degrees"))
+        ->check(between(0.0, 90.0));
+    of_sky_and_sun(app.add_flag("--sky-extract-sun", values_.sky.extract_sun,
+                                "Find the sun's disc in the map and make it a light"));
+    CLI::Option* const sun =
+        of_sky_and_sun(app.add_option("--sun-direction", sun_direction_, "X,Y,Z: the way the sun's light travels")
+                           ->check(not_empty()));
+    of_sky_and_sun(app.add_option("--sun-illuminance", values_.sun.illuminance, "Lux on a plane facing the sun"))
         ->check(not_negative())
-        ->group(group);
-    app.add_option("--sky-rotation", values_.sky.rotation_degrees,
-                   "Degrees about +Y of a sky map, on top of the sidecar's")
-        ->check(between(-360.0, 360.0))
-        ->group(group);
-    app.add_option("--sky-blur", values_.sky.blur_degrees,
-                   "Blur the sky map, keeping its energy: half width in degrees")
+        ->needs(sun);
+    of_sky_and_sun(app.add_option("--sun-colour,--sun-color", sun_color_, "R,G,B, times the illuminance"))->needs(sun);
+    of_sky_and_sun(app.add_option("--sun-angle", values_.sun.angle_degrees, "The sun's diameter in degrees"))
         ->check(between(0.0, 90.0))
-        ->group(group);
-    app.add_flag("--sky-extract-sun", values_.sky.extract_sun, "Find the sun's disc in the map and make it a light")
-        ->group(group);
-    CLI::Option* const sun = app.add_option("--sun-direction", sun_direction_, "X,Y,Z: the way the sun's light travels")
-                                 ->check(not_empty())
-                                 ->group(group);
-    app.add_option("--sun-illuminance", values_.sun.illuminance, "Lux on a plane facing the sun")
-        ->check(not_negative())
-        ->needs(sun)
-        ->group(group);
-    app.add_option("--sun-colour,--sun-color", sun_color_, "R,G,B, times the illuminance")->needs(sun)->group(group);
-    app.add_option("--sun-angle", values_.sun.angle_degrees, "The sun's diameter in degrees")
-        ->check(between(0.0, 90.0))
-        ->needs(sun)
-        ->group(group);
-    app.add_option("--include", include_, "Layers that the files sum: some of direct,sky,indirect")->group(group);
-    app.add_option("--direct-scale", values_.direct_scale, "Times direct and sky light")
-        ->check(between(0.0, kMaxScale))
-        ->group(group);
-    app.add_option("--indirect-scale", values_.indirect_scale, "Times bounced light")
-        ->check(between(0.0, kMaxScale))
-        ->group(group);
+        ->needs(sun);
+    include_option_ =
+        app.add_option("--include", include_, "Layers that the files sum: some of direct,sky,indirect")->group(group);
+    direct_scale_ = app.add_option("--direct-scale", values_.direct_scale, "Times direct and sky light")
+                        ->check(between(0.0, kMaxScale))
+                        ->group(group);
+    indirect_scale_ = app.add_option("--indirect-scale", values_.indirect_scale, "Times bounced light")
+                          ->check(between(0.0, kMaxScale))
+                          ->group(group);
 
     const std::string transport = "Transport";
     app.add_option("--samples", values_.samples, "Paths per texel or pixel (0: the preset's)")
@@ -190,6 +240,30 @@ Status LightOptions::read(BakeOptions& out) const {
     if (!out.include.direct && !out.include.sky && !out.include.indirect)
         return usage("--include", include_, "some of direct, sky, indirect");
     return success();
+}
+
+std::string LightOptions::take_over(const LightRecord& bake, BakeOptions& out) const {
+    Words words;
+    if (std::ranges::none_of(sky_and_sun_, [](const CLI::Option* option) { return option->count() > 0; })) {
+        out.sky = bake.sky;
+        out.sun = bake.sun;
+        say(bake.sky, words);
+        say(bake.sun, words);
+    }
+    if (include_option_->count() == 0) {
+        out.include = bake.include;
+        if (!bake.include.direct || !bake.include.sky || !bake.include.indirect)
+            words.add("--include", names_of(bake.include));
+    }
+    if (direct_scale_->count() == 0) {
+        out.direct_scale = bake.direct_scale;
+        words.add_unless(1.0, "--direct-scale", bake.direct_scale);
+    }
+    if (indirect_scale_->count() == 0) {
+        out.indirect_scale = bake.indirect_scale;
+        words.add_unless(1.0, "--indirect-scale", bake.indirect_scale);
+    }
+    return words.text;
 }
 
 }  // namespace lumel::cli

@@ -150,10 +150,11 @@ struct BakeWriter::Impl {
 
     Status finish(BakeReport& report, const Diagnostics& diagnostics) {
         LUMEL_TRY_STATUS(write_previews());
-        LUMEL_TRY_STATUS(write_manifest(output.path() / kManifestFile,
-                                        {loaded.scene, charts, atlas, options, report, pages, geometry_hash}));
+        const ManifestInput input{loaded.scene, charts,        atlas,           options,      report,
+                                  pages,        geometry_hash, loaded.sky_hash, output.path()};
+        LUMEL_TRY_STATUS(write_manifest(input));
         report.peak_memory_bytes = peak_memory();
-        return write_report(output.path() / kReportFile, report, options, diagnostics);
+        return write_report(input, diagnostics);
     }
 
     Status write_previews() {

@@ -19,9 +19,11 @@
 #include "io/atomic_file.h"
 #include "io/baked.h"
 #include "io/image_io.h"
+#include "io/light_record.h"
 #include "io/manifest.h"
 #include "io/page_writer.h"
 #include "math/constants.h"
+#include "math/frame.h"
 #include "support/json_schema.h"
 #include "support/load_gltf.h"
 #include "support/temporary_folder.h"
@@ -291,8 +293,10 @@ TEST(Preview, IsTheMeanOfCoveredTexels) {
 // Everything but rays: a scene, its layout, made-up pages.
 struct Baked {
     explicit Baked(const std::filesystem::path& output, Preset preset = Preset::medium,
-                   std::optional<bool> denoise = {}, bool demotes = false)
-        : loaded(scene(demotes)) {
+                   std::optional<bool> denoise = {}, bool demotes = false, const BakeOptions& light = {},
+                   const std::string& sky_hash = {})
+        : loaded(scene(demotes)), options(light) {
+        loaded.result->sky_hash = sky_hash;
         options.preset = preset;
         options.denoise = denoise;
         ChartOptions chart_options;
@@ -375,6 +379,74 @@ TEST(BakeWriter, ManifestAndReportFollowTheirSchemas) {
     // Every file that the manifest names is there.
     for (const auto& [kind, file] : manifest["pages"][0]["files"].items())
         EXPECT_TRUE(std::filesystem::exists(folder / "out" / file["file"].get<std::string>())) << kind;
+}
+
+// What lit the bake is written as the schema says and read back as it was asked for; a sky map is found from elsewhere.
+TEST(BakeWriter, TheLightOfTheBakeIsRecorded) {
+    const TemporaryFolder folder;
+    std::filesystem::create_directory(folder / "maps");
+    ASSERT_TRUE(write_file(folder / "maps/sky.hdr", std::as_bytes(std::span("made up"))).ok());
+    const std::string hash = hash_file(folder / "maps/sky.hdr").value();
+    EXPECT_EQ(hash.size(), 32u);
+    BakeOptions none, all, constant;
+    all.sky.file = folder / "maps/sky.hdr";
+    all.sky.intensity = 8000.1;
+    all.sky.rotation_degrees = -30;
+    all.sky.blur_degrees = 2.5;
+    all.sky.extract_sun = true;
+    all.sun.direction = unit_or(Vec3{1, -2, 0.3f}, Vec3{});
+    all.sun.illuminance = 0.0;
+    all.sun.color = {1, 0.9f, 0.8f};
+    all.sun.angle_degrees = 0.53;
+    all.include.sky = false;
+    all.direct_scale = 2;
+    all.indirect_scale = 0.5;
+    constant.sky.color = Vec3{0.1f, 0.2f, 0.3f};
+    for (const BakeOptions& options : {none, all, constant}) {
+        Baked baked(folder / "out", Preset::medium, {}, false, options, options.sky.file.empty() ? "" : hash);
+        ASSERT_TRUE(baked.writer->write_scene().ok());
+        ASSERT_TRUE(baked.finish().ok());
+        const Json manifest = json_file(folder / "out/manifest.json"), report = json_file(folder / "out/report.json");
+        EXPECT_EQ(joined(schema("manifest").errors(manifest)), "");
+        EXPECT_EQ(joined(schema("report").errors(report)), "");
+        EXPECT_EQ(report["options"]["sky"], manifest["light"]["sky"]);
+        EXPECT_EQ(report["options"]["sun"], manifest["light"]["sun"]);
+        const auto read = read_light_record(folder / "out");
+        ASSERT_TRUE(read.ok()) << read.error().text();
+        EXPECT_EQ(read->input_hash, std::string(32, 'a'));
+        EXPECT_EQ(read->sky.color, options.sky.color);
+        EXPECT_EQ(read->sky.intensity, options.sky.intensity);
+        EXPECT_EQ(read->sky.rotation_degrees, options.sky.rotation_degrees);
+        EXPECT_EQ(read->sky.blur_degrees, options.sky.blur_degrees);
+        EXPECT_EQ(read->sky.extract_sun, options.sky.extract_sun);
+        EXPECT_EQ(read->sun.direction, options.sun.direction);
+        EXPECT_EQ(read->sun.illuminance, options.sun.illuminance);
+        EXPECT_EQ(read->sun.color, options.sun.color);
+        EXPECT_EQ(read->sun.angle_degrees, options.sun.angle_degrees);
+        EXPECT_EQ(read->include.sky, options.include.sky);
+        EXPECT_EQ(read->direct_scale, options.direct_scale);
+        EXPECT_EQ(read->indirect_scale, options.indirect_scale);
+        EXPECT_EQ(read->sky.file.empty(), options.sky.file.empty());
+        if (options.sky.file.empty()) continue;
+        EXPECT_EQ(manifest["light"]["sky"]["file"], "../maps/sky.hdr");
+        EXPECT_TRUE(std::filesystem::equivalent(read->sky.file, options.sky.file)) << read->sky.file;
+        EXPECT_EQ(read->sky_hash, hash);
+    }
+}
+
+TEST(LightRecord, WhatIsNoManifestIsAnError) {
+    const TemporaryFolder folder;
+    const auto error = [&](const std::string& text) {
+        EXPECT_TRUE(write_file(folder / "manifest.json", std::as_bytes(std::span(text))).ok());
+        const auto read = read_light_record(folder.path());
+        return read.ok() ? "" : read.error().text();
+    };
+    EXPECT_FALSE(read_light_record(folder.path()).ok());
+    for (const char* text : {"{}", "[]", "nonsense", R"({"input_hash":"a","layers":{"included":[]}})",
+                             R"({"input_hash":"a","layers":{"included":[]},"light":{"sky":{"source":"file"}}})",
+                             R"({"input_hash":"a","layers":{"included":[]},"light":{"sun":{"direction":[1]}}})"})
+        EXPECT_NE(error(text).find("manifest.json"), std::string::npos) << text;
+    EXPECT_EQ(error(R"({"input_hash":"a","layers":{"included":["sky"]},"light":{"sun":null}})"), "");
 }
 
 // Nodes that lost their texels to bad charts are written as other volume nodes are.

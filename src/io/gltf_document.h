@@ -24,6 +24,7 @@ using GltfDocumentPtr = std::unique_ptr<GltfDocument, GltfDocumentDeleter>;
 struct LoadedScene {
     Scene scene;
     GltfDocumentPtr document;
+    std::string sky_hash = {};  // of the sky map's file, where the caller replaced the scene's sky by one
 };
 
 // Reads .glb or .gltf (external or embedded buffers and images), then `<scene>.lumel.json` beside it where present.

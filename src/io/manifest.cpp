@@ -6,8 +6,8 @@
 #include "encode/irradiance.h"
 #include "io/image_io.h"
 #include "io/json_write.h"
+#include "io/light_json.h"
 #include "io/node_class.h"
-#include "path/radiance_sums.h"
 
 namespace lumel {
 namespace {
@@ -97,14 +97,6 @@ Json charts_json(const Atlas& atlas) {
     return {{"page", std::move(page)}, {"scale", std::move(scale)}, {"offset", std::move(offset)}};
 }
 
-Json layer_names(const Include& include) {
-    const LayerWeights weights = layer_weights(include);
-    Json out = Json::array();
-    for (std::size_t l = 0; l < kLayerCount; ++l)
-        if (weights[l] != 0.0f) out.push_back(kLayerNames[l]);
-    return out;
-}
-
 Json frame_json() {
     return {{"space", "world"},
             {"handedness", "right"},
@@ -134,6 +126,10 @@ Json manifest_json(const ManifestInput& in) {
     out["encoding"] = {{"lightmap", "irradiance"}, {"directional", "l1-normalised"}};
     out["frame"] = frame_json();
     out["layers"] = {{"included", layer_names(in.options.include)}, {"master", layer_names(Include{})}};
+    out["light"] = {{"sky", sky_json(in.options.sky, in.sky_hash, in.folder)},
+                    {"sun", sun_json(in.options.sun)},
+                    {"direct_scale", in.options.direct_scale},
+                    {"indirect_scale", in.options.indirect_scale}};
     out["denoised"] = is_denoised(in.options);
     out["texels_per_metre"] = in.atlas.texels_per_metre;
     out["scene_wide_uvs"] = in.charts.scene_wide;
@@ -176,7 +172,8 @@ Json warnings_json(const Diagnostics& diagnostics) {
     return out;
 }
 
-Json options_json(const BakeOptions& options) {
+Json options_json(const ManifestInput& in) {
+    const BakeOptions& options = in.options;
     static constexpr const char* kPresets[] = {"preview", "medium", "production"};
     static constexpr const char* kUv1[] = {"automatic", "scene", "mesh", "ignore"};
     return {{"preset", kPresets[static_cast<std::size_t>(options.preset)]},
@@ -192,17 +189,20 @@ Json options_json(const BakeOptions& options) {
             {"two_sided", options.two_sided},
             {"ao_distance", options.ao_distance},
             {"stop", options.stop == StopRule::flux ? "flux" : "fixed"},
+            {"sky", sky_json(options.sky, in.sky_hash, in.folder)},
+            {"sun", sun_json(options.sun)},
             {"direct_scale", options.direct_scale},
             {"indirect_scale", options.indirect_scale},
             {"include", layer_names(options.include)},
             {"max_memory_bytes", options.max_memory_bytes}};
 }
 
-Json report_json(const BakeReport& report, const BakeOptions& options, const Diagnostics& diagnostics) {
+Json report_json(const ManifestInput& in, const Diagnostics& diagnostics) {
+    const BakeReport& report = in.report;
     Json out;
     out["version"] = kVersion;
     out["input_hash"] = report.input_hash;
-    out["options"] = options_json(options);
+    out["options"] = options_json(in);
     out["stages"] = stages_json(report);
     out["pages"] = page_reports_json(report);
     out["triangles"] = report.triangles;
@@ -236,7 +236,7 @@ Status write_json(const std::filesystem::path& path, const Json& json, int inden
 
 }  // namespace
 
-Status write_manifest(const std::filesystem::path& path, const ManifestInput& input) {
+Status write_manifest(const ManifestInput& input) {
     // Indented, the arrays of charts would take a line per number.
     const Json json = manifest_json(input);
     std::string text = "{";
@@ -246,12 +246,11 @@ Status write_manifest(const std::filesystem::path& path, const ManifestInput& in
         text += ' ' + Json(key).dump() + ": " + value.dump(small ? 1 : -1, ' ', false, Json::error_handler_t::replace);
     }
     text += "\n}\n";
-    return write_file(path, std::as_bytes(std::span(text)));
+    return write_file(input.folder / kManifestFile, std::as_bytes(std::span(text)));
 }
 
-Status write_report(const std::filesystem::path& path, const BakeReport& report, const BakeOptions& options,
-                    const Diagnostics& diagnostics) {
-    return write_json(path, report_json(report, options, diagnostics), 1);
+Status write_report(const ManifestInput& input, const Diagnostics& diagnostics) {
+    return write_json(input.folder / kReportFile, report_json(input, diagnostics), 1);
 }
 
 }  // namespace lumel

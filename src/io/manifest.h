@@ -37,11 +37,11 @@ struct ManifestInput {
     const BakeReport& report;
     std::span<const ManifestPage> pages;
     std::string geometry_hash;
+    std::string sky_hash;          // of the file that the options' sky was read from
+    std::filesystem::path folder;  // where the files are written
 };
 
-Status write_manifest(const std::filesystem::path& path, const ManifestInput& input);
-
-Status write_report(const std::filesystem::path& path, const BakeReport& report, const BakeOptions& options,
-                    const Diagnostics& diagnostics);
+Status write_manifest(const ManifestInput& input);
+Status write_report(const ManifestInput& input, const Diagnostics& diagnostics);
 
 }  // namespace lumel
