@@ -308,7 +308,9 @@ std::size_t FluxIntegrator::find_origins(const GatherSite& site, std::uint32_t k
     const std::size_t n = site.points.size();
     lumel_.surface_starts(site.points, std::span(w.sides).first(n), *w.lumel, w.origins);
     if (!any_double_sided_) return n;
-    return keep_open_points(std::span(w.origins).first(n), site.texel_size, key, transport_, w.rays, w.hits);
+    const auto origins = std::span(w.origins).first(n);
+    return keep_open_points(origins, enclosed_points(origins, kEnclosureReach * site.texel_size, mix32(key),
+                                                     transport_.tracer, transport_.geometry, w.rays, w.hits));
 }
 
 void FluxIntegrator::gather_texel(const GatherSite& site, Workspace& w, RadianceSums& out, std::size_t index) const {

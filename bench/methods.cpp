@@ -32,8 +32,8 @@ RadianceSums with_cells(const GatherJob& job) {
     Transport transport = transport_through(b, lights);
     const SurfaceCells cells = need(make_lit_cells(b.charts, b.atlas, transport, job.path, job.context));
     transport.cells = &cells;
-    return need(gather_page(b.texels, b.charts, b.atlas, transport, job.path, job.range.first, job.range.count,
-                            job.context));
+    return need(
+        gather_page(b.texels, b.charts, b.atlas, transport, job.path, job.range.first, job.range.count, job.context));
 }
 
 RadianceSums flux_with(const GatherJob& job, const FluxChoices& choices, Choice choice) {

@@ -24,7 +24,7 @@ namespace {
 
 struct Options {
     std::string scene, output, resolution, max_memory, progress;
-    std::string preset = "medium", uv1 = "automatic", stop = "fixed", denoise = "auto";
+    std::string preset = "medium", uv1 = "automatic", integrator = "auto", stop = "fixed", denoise = "auto";
     std::uint32_t views = 2, view_samples = 32;
     std::optional<double> error, confidence;
     BakeOptions values;
@@ -61,6 +61,9 @@ Result<BakeOptions> read_options(const Options& options) {
                      "a fixed number of samples has no error to stop at"};
     out.error = options.error.value_or(out.error);
     out.confidence = options.confidence.value_or(out.confidence);
+    out.integrator = options.integrator == "cells"   ? Integrator::cells
+                     : options.integrator == "paths" ? Integrator::paths
+                                                     : Integrator::automatic;
     out.stop = options.stop == "flux" ? StopRule::flux : StopRule::fixed;
     return out;
 }
@@ -130,6 +133,7 @@ void print_summary(const BakeReport& report, const std::string& folder) {
                 report.pages.size() == 1 ? "" : "s", static_cast<unsigned long long>(report.charts));
     // A kept layout has a density of its own everywhere.
     if (report.texels_per_metre > 0.0) std::printf(", %.1f texels/m", report.texels_per_metre);
+    if (report.cells > 0) std::printf(", %llu cells", static_cast<unsigned long long>(report.cells));
     std::printf("\n");
     std::printf("%.1f Mrays at %.2f Mrays/s, %.0f %% of thread time in %s; ", 1e-6 * static_cast<double>(report.rays),
                 1e-6 * report.rays_per_second,
@@ -222,6 +226,10 @@ Run add_bake(CLI::App& app) {
     app.add_option("--ao-distance", values.ao_distance,
                    "Reach of ambient occlusion in metres (0: a tenth of the diagonal)")
         ->check(not_negative())
+        ->group(transport);
+    app.add_option("--integrator", options->integrator,
+                   "auto, cells (paths end at a cache of the surfaces' light) or paths (brute force)")
+        ->check(CLI::IsMember({"auto", "cells", "paths"}))
         ->group(transport);
     app.add_option(
            "--stop", options->stop,

@@ -36,6 +36,7 @@ struct BakeReport {
     std::vector<StageTime> stages;
     std::vector<PageReport> pages;
     std::uint64_t triangles = 0, instances = 0, charts = 0, texels = 0, invalid_texels = 0;
+    std::uint64_t cells = 0;          // surface cells that paths end at; 0: brute force
     std::uint64_t samples = 0;        // traced, over all texels
     std::uint64_t rays = 0;           // all kinds
     double trace_wall_seconds = 0.0;  // wall time of the stage that traces

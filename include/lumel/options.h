@@ -35,6 +35,13 @@ enum class StopRule : std::uint8_t {
             // its mean at `confidence`. Biased dark on rare-event light; kept as the published baseline
 };
 
+// Where the paths of a texel end.
+enum class Integrator : std::uint8_t {
+    automatic,  // cells from 32 samples per texel on; fewer would not pay for them
+    cells,      // at surface cells, which know the bounces beyond (docs/stages/light.md): an order of magnitude faster
+    paths,      // by chance or at the last bounce: brute force, for truth
+};
+
 struct SunOptions {
     std::optional<Vec3> direction;  // the way light travels, of any length; unset: no sun from the options
     double illuminance = 100000.0;  // lux on a plane facing it: a clear noon
@@ -71,6 +78,7 @@ struct BakeOptions {
     std::uint32_t bounces = 64;  // 0 = direct light only, up to 1024
     std::uint64_t seed = 1;
     double ao_distance = 0.0;  // metres; 0: a tenth of the scene's diagonal
+    Integrator integrator = Integrator::automatic;
     StopRule stop = StopRule::fixed;
     double error = 0.05;       // of StopRule::flux: relative
     double confidence = 0.95;  // of StopRule::flux: 0.5..0.9999

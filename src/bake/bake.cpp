@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 
 #include "bake/memory.h"
@@ -14,6 +15,7 @@
 #include "chart/chart_set.h"
 #include "light/light_set.h"
 #include "math/normal_quantile.h"
+#include "path/light_cells.h"
 #include "path/path_integrator.h"
 #include "post/denoise.h"
 #include "post/lightmap.h"
@@ -56,6 +58,14 @@ PathOptions path_options(const BakeOptions& options, const WorldGeometry& geomet
     return out;
 }
 
+constexpr std::uint32_t kFewestSamplesForCells = 32;  // fewer cost less than the cells would
+
+bool uses_cells(const BakeOptions& options, const PathOptions& path) {
+    if (path.bounces == 0) return false;
+    if (options.integrator == Integrator::automatic) return path.samples >= kFewestSamplesForCells;
+    return options.integrator == Integrator::cells;
+}
+
 constexpr std::uint32_t kSmallestPage = 256;
 
 // The largest page edge, of halves of `edge`, whose full page would fit; at least the smallest.
@@ -66,14 +76,14 @@ std::uint32_t edge_that_fits(std::uint32_t edge, std::uint64_t memory, unsigned 
 
 // Packs the charts so that everything fits the memory allowed. Pages shrink by halves.
 Result<Atlas> make_atlas_within_memory(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts,
-                                       ChartOptions options, std::uint64_t max_memory, BakeReport& report,
-                                       Context& context) {
+                                       ChartOptions options, double texels_per_cell, std::uint64_t max_memory,
+                                       BakeReport& report, Context& context) {
     const bool one_page = charts.scene_wide || options.resolution_width != 0;
     const Diagnostics before = context.diagnostics;
     for (;;) {
         context.diagnostics = before;  // what a layout that is given up had to say is of no interest
         LUMEL_TRY(Atlas atlas, make_atlas(scene, geometry, charts, options, context));
-        report.predicted_memory_bytes = bake_memory(scene, geometry, atlas, context.threads());
+        report.predicted_memory_bytes = bake_memory(scene, geometry, atlas, texels_per_cell, context.threads());
         if (max_memory == 0 || report.predicted_memory_bytes <= max_memory) return atlas;
         if (one_page || options.max_page <= kSmallestPage) break;
         const std::uint64_t scene_bytes = scene_memory(scene, geometry, atlas);
@@ -157,6 +167,8 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
         return Error{ErrorCode::invalid_input, "the scene has no light, no emissive surface and no sky", scene.source,
                      "give it a sky, for example --sky 1,1,1, or a sun with --sun-direction"};
 
+    const PathOptions path = path_options(options, geometry);
+    const double cell_edge = uses_cells(options, path) ? texels_per_cell(path.samples) : 0.0;
     ChartSet charts;
     Atlas atlas;
     {
@@ -165,7 +177,7 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
     }
     {
         const StageTimer timer(report, "atlas");
-        LUMEL_TRY(atlas, make_atlas_within_memory(scene, geometry, charts, chart_options(options),
+        LUMEL_TRY(atlas, make_atlas_within_memory(scene, geometry, charts, chart_options(options), cell_edge,
                                                   options.max_memory_bytes, report, context));
     }
     if (atlas.pages.empty())
@@ -180,8 +192,15 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
         const StageTimer timer(report, "acceleration");
         LUMEL_TRY(tracer, make_embree_tracer(geometry, surfaces, context));
     }
-    const Transport transport{scene, geometry, surfaces, lights, *tracer};
-    const PathOptions path = path_options(options, geometry);
+    Transport transport{scene, geometry, surfaces, lights, *tracer};
+    std::optional<SurfaceCells> cells;
+    if (cell_edge > 0.0) {
+        const StageTimer timer(report, "cells");
+        LUMEL_TRY(cells, make_lit_cells(charts, atlas, transport, path, context));
+        transport.cells = &*cells;
+        report.cells = cells->size();
+        report.trace_wall_seconds += timer.seconds();
+    }
     const auto by_page = triangles_by_page(scene, geometry, charts, atlas);
 
     Totals totals;

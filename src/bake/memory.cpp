@@ -4,6 +4,7 @@
 
 #include "encode/output_sizes.h"
 #include "light/emissive.h"
+#include "path/light_cells.h"
 #include "path/radiance_sums.h"
 
 namespace lumel {
@@ -35,6 +36,10 @@ constexpr std::uint64_t kCopiesOfRows = 1 + 2 * 3;
 // Of a page, once it is written, there stay: previews, and the picture for scene.glb, which noise does not let compress
 // by much.
 constexpr std::uint64_t kPictureBytes = 3;
+
+// Of cells: site, side, use; texel_at of their pages. And their UVs of each triangle.
+constexpr std::uint64_t kCellBytes = 32, kCellBytesPerTriangle = 3 * sizeof(Vec2) + 2 * sizeof(std::uint32_t);
+constexpr std::uint64_t kLeastCellsPerChart = 4;
 
 // Both atlases, and packing.
 constexpr std::uint64_t kPlacementBytes = 2 * sizeof(ChartPlacement) + 32;
@@ -126,11 +131,28 @@ std::uint64_t page_memory(const AtlasPage& page, unsigned threads) {
     return texels * (kSumsBytes + kLightmapBytes + kBytesPerPixel) + std::max(texels * kTexelBufferBytes, rows);
 }
 
-std::uint64_t bake_memory(const Scene& scene, const WorldGeometry& geometry, const Atlas& atlas, unsigned threads) {
+CellMemory cell_memory(const WorldGeometry& geometry, const Atlas& atlas, double texels_per_cell) {
+    std::uint64_t pixels = 0;
+    for (const AtlasPage& page : atlas.pages) pixels += pixels_of(page);
+    const auto covered = static_cast<std::uint64_t>(static_cast<double>(pixels) / (texels_per_cell * texels_per_cell));
+    // Small charts are drawn larger than they are: 2 x 2 cells.
+    std::uint64_t cells = covered + kLeastCellsPerChart * atlas.placements.size();
+    const bool both_sides = std::ranges::any_of(
+        geometry.triangles, [](const WorldTriangle& triangle) { return (triangle.flags & kDoubleSided) != 0; });
+    const std::uint64_t fronts = cells * (kTexelBufferBytes + kCellBytes);
+    if (both_sides) cells *= 2;
+    return {fronts + cells * sizeof(Vec3) * 2 + geometry.triangles.size() * kCellBytesPerTriangle,
+            cells * (links_per_cell(cells) * sizeof(CellLink) + sizeof(CellGather) + sizeof(Vec3))};
+}
+
+std::uint64_t bake_memory(const Scene& scene, const WorldGeometry& geometry, const Atlas& atlas, double texels_per_cell,
+                          unsigned threads) {
     std::uint64_t page = 0;
     for (const AtlasPage& p : atlas.pages) page = std::max(page, page_memory(p, threads));
-    return scene_memory(scene, geometry, atlas) + preview_memory(atlas) + picture_memory(atlas) +
-           std::max(page, output_memory(scene, atlas));
+    CellMemory cells;
+    if (texels_per_cell > 0.0) cells = cell_memory(geometry, atlas, texels_per_cell);
+    return scene_memory(scene, geometry, atlas) + preview_memory(atlas) + picture_memory(atlas) + cells.cells +
+           std::max({page, cells.links, output_memory(scene, atlas)});
 }
 
 }  // namespace lumel

@@ -19,8 +19,15 @@ std::uint64_t scene_memory(const Scene& scene, const WorldGeometry& geometry, co
 // One page while it is baked and written: texel buffer, sums, lightmap, rows of the files on so many threads.
 std::uint64_t page_memory(const AtlasPage& page, unsigned threads);
 
-// All that `lumel bake` takes at its peak, which is either the largest page or the scene.glb and the manifest at the
-// end.
-std::uint64_t bake_memory(const Scene& scene, const WorldGeometry& geometry, const Atlas& atlas, unsigned threads);
+// Surface cells: what stays while pages are baked, and what comes on top while they are lit.
+struct CellMemory {
+    std::uint64_t cells = 0, links = 0;
+};
+CellMemory cell_memory(const WorldGeometry& geometry, const Atlas& atlas, double texels_per_cell);
+
+// All that `lumel bake` takes at its peak, which is the largest page, or the cells while they are lit, or the scene.glb
+// and the manifest at the end. `texels_per_cell`: edge of the cells, 0 for none.
+std::uint64_t bake_memory(const Scene& scene, const WorldGeometry& geometry, const Atlas& atlas, double texels_per_cell,
+                          unsigned threads);
 
 }  // namespace lumel

@@ -10,8 +10,7 @@
 namespace lumel {
 namespace {
 
-constexpr float kLift = 1.0f / 16;            // of the points that look at each other, in edges of the cell
-constexpr std::uint32_t kVisibilityStep = 4;  // every fourth sample point is looked at
+constexpr float kLift = 1.0f / 16;  // of the points that look at each other, in edges of the cell
 
 // The eight texels around one, in this order.
 constexpr std::array<std::array<std::int32_t, 2>, 8> kNeighbours{
@@ -122,61 +121,83 @@ std::uint32_t SurfaceCells::find(std::uint32_t triangle, float b1, float b2, boo
 }
 
 std::uint32_t SurfaceCells::sample_points(std::uint32_t cell, const Scene& scene, const WorldGeometry& geometry,
-                                          const ChartSet& charts,
-                                          std::span<SamplePoint, kSamplesPerTexel> out) const {
+                                          const ChartSet& charts, std::span<SamplePoint, kSamplesPerTexel> out) const {
     if (!usable_[cell]) return 0;
     const Site& s = site(cell);
     return lumel::sample_points(pages_[s.page], s.texel, scene, geometry, charts, atlas_, out, Footprint::whole);
 }
 
+namespace {
+
+Vec3 lifted(const WorldGeometry& geometry, const SamplePoint& point, float lift) {
+    const auto [t, b1, b2] = point;
+    return geometry.position(t, b1, b2) + geometry.shading_normal(t, b1, b2) * lift;
+}
+
+// The point nearest to the middle of all: a texel's own centre may lie on the rim of its chart, at the foot of a wall.
+const SamplePoint& middle_of(std::span<const SamplePoint> points, const WorldGeometry& geometry) {
+    const auto position = [&](const SamplePoint& p) { return geometry.position(p.triangle, p.b1, p.b2); };
+    Vec3 mean{};
+    for (const SamplePoint& p : points) mean += position(p) * (1.0f / static_cast<float>(points.size()));
+    const auto off = [&](const SamplePoint& p) {
+        const Vec3 d = position(p) - mean;
+        return dot(d, d);
+    };
+    const SamplePoint* best = &points[0];
+    for (const SamplePoint& p : points)
+        if (off(p) < off(*best)) best = &p;
+    return *best;
+}
+
+}  // namespace
+
 // A cell whose sample points are not all seen from its middle is not usable; neighbours lend each other light where
 // their middles see each other. Points are lifted a little, so that roughness of the surface itself does not count.
 bool SurfaceCells::find_visibility(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts,
                                    const Tracer& tracer, Context& context) {
-    return parallel_for(
-        context, size(), 64,
-        [&](const ChunkRange& range) {
-            std::array<SamplePoint, kSamplesPerTexel> points;
-            std::array<Ray, kSamplesPerTexel / kVisibilityStep + kNeighbours.size()> rays;
-            std::array<std::uint8_t, rays.size()> blocked;
-            std::array<std::uint32_t, kNeighbours.size()> bits{};
-            for (std::size_t i = range.begin; i < range.end; ++i) {
-                const auto cell = static_cast<std::uint32_t>(i);
-                const Site& s = site(cell);
-                const TexelBuffer& texels = pages_[s.page];
-                const float lift = (is_back(cell) ? -kLift : kLift) * s.edge;
-                const auto middle_of = [&](std::uint32_t texel) {
-                    return texels.position[texel] + texels.normal[texel] * lift;
-                };
-                const Vec3 middle = middle_of(s.texel);
-                const std::uint32_t n = sample_points(cell, scene, geometry, charts, points);
-                std::size_t count = 0;
-                const auto look_at = [&](Vec3 to) {
-                    const float distance = length(to - middle);
-                    if (!(distance > 0.0f)) return false;
-                    rays[count++] = segment(middle, to - middle, distance);
-                    return true;
-                };
-                for (std::uint32_t k = 0; k < n; k += kVisibilityStep) {
-                    const auto [t, b1, b2] = points[k];
-                    look_at(geometry.position(t, b1, b2) + geometry.shading_normal(t, b1, b2) * lift);
-                }
-                const std::size_t own = count;
-                for (const auto& [dx, dy] : kNeighbours) {
-                    const std::uint32_t front =
-                        front_at(s.page, texels.x[s.texel] + dx, texels.y[s.texel] + dy, texels.chart[s.texel]);
-                    if (front == kNone || (is_back(cell) && sites_[front].back == kNone)) continue;
-                    if (look_at(middle_of(sites_[front].texel))) bits[count - own - 1] = neighbour_bit(dx, dy);
-                }
-                tracer.occluded(std::span(rays).first(count), std::span(blocked).first(count));
-                const bool whole = std::none_of(blocked.begin(), blocked.begin() + static_cast<std::ptrdiff_t>(own),
-                                                [](std::uint8_t b) { return b != 0; });
-                usable_[cell] = whole ? 1 : 0;
-                for (std::size_t k = own; k < count; ++k)
-                    if (!blocked[k]) open_[cell] |= static_cast<std::uint8_t>(1u << bits[k - own]);
-            }
-        },
-        "cells");
+    using Points = std::array<SamplePoint, kSamplesPerTexel>;
+    const auto lift_of = [&](std::uint32_t cell) { return (is_back(cell) ? -kLift : kLift) * site(cell).edge; };
+    std::vector<Vec3> middles(size());
+    const bool placed = parallel_for(context, size(), 64, [&](const ChunkRange& range) {
+        Points points;
+        for (std::size_t i = range.begin; i < range.end; ++i) {
+            const auto cell = static_cast<std::uint32_t>(i);
+            const std::uint32_t n = sample_points(cell, scene, geometry, charts, points);
+            middles[i] = lifted(geometry, middle_of(std::span(points).first(n), geometry), lift_of(cell));
+        }
+    });
+    return placed && parallel_for(context, size(), 64, [&](const ChunkRange& range) {
+               Points points;
+               std::array<Ray, kSamplesPerTexel + kNeighbours.size()> rays;
+               std::array<std::uint8_t, rays.size()> blocked;
+               std::array<std::uint32_t, kNeighbours.size()> bits{};
+               for (std::size_t i = range.begin; i < range.end; ++i) {
+                   const auto cell = static_cast<std::uint32_t>(i);
+                   const Site& s = site(cell);
+                   const TexelBuffer& texels = pages_[s.page];
+                   std::size_t count = 0;
+                   const auto look_at = [&](Vec3 to) {
+                       const float distance = length(to - middles[i]);
+                       if (!(distance > 0.0f)) return false;
+                       rays[count++] = segment(middles[i], to - middles[i], distance);
+                       return true;
+                   };
+                   const std::uint32_t n = sample_points(cell, scene, geometry, charts, points);
+                   for (std::uint32_t k = 0; k < n; ++k) look_at(lifted(geometry, points[k], lift_of(cell)));
+                   const std::size_t own = count;
+                   for (const auto& [dx, dy] : kNeighbours) {
+                       const std::uint32_t front =
+                           front_at(s.page, texels.x[s.texel] + dx, texels.y[s.texel] + dy, texels.chart[s.texel]);
+                       const std::uint32_t other = is_back(cell) && front != kNone ? sites_[front].back : front;
+                       if (other != kNone && look_at(middles[other])) bits[count - own - 1] = neighbour_bit(dx, dy);
+                   }
+                   tracer.occluded(std::span(rays).first(count), std::span(blocked).first(count));
+                   const auto outside = blocked.begin() + static_cast<std::ptrdiff_t>(own);
+                   usable_[cell] = std::find(blocked.begin(), outside, 1) == outside ? 1 : 0;
+                   for (std::size_t k = own; k < count; ++k)
+                       if (!blocked[k]) open_[cell] |= static_cast<std::uint8_t>(1u << bits[k - own]);
+               }
+           });
 }
 
 Status SurfaceCells::solve(std::span<const CellGather> gathers, std::span<const CellLink> links, std::uint32_t bounces,

@@ -25,14 +25,14 @@ namespace lumel {
 
 // Of what arrives at a cell, the share `weight` of the irradiance of another.
 struct CellLink {
-    std::uint32_t from = kNone;              // kNone: no link
-    std::array<std::uint16_t, 3> weight{};   // of 2^15: up to 2
+    std::uint32_t from = kNone;             // kNone: no link
+    std::array<std::uint16_t, 3> weight{};  // of 2^15: up to 2
 };
 
 // What a cell gathered by paths of its own, as sums: light that reached it without another cell, and links.
 struct CellGather {
-    Vec3 direct{};             // mean over the paths that count
-    std::uint32_t count = 0;   // paths that count
+    Vec3 direct{};            // mean over the paths that count
+    std::uint32_t count = 0;  // paths that count
     std::uint32_t traced = 0;
 };
 

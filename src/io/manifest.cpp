@@ -175,6 +175,7 @@ Json warnings_json(const Diagnostics& diagnostics) {
 Json options_json(const ManifestInput& in) {
     const BakeOptions& options = in.options;
     static constexpr const char* kPresets[] = {"preview", "medium", "production"};
+    static constexpr const char* kIntegrators[] = {"auto", "cells", "paths"};
     static constexpr const char* kUv1[] = {"automatic", "scene", "mesh", "ignore"};
     return {{"preset", kPresets[static_cast<std::size_t>(options.preset)]},
             {"samples", options.samples != 0 ? options.samples : preset_values(options.preset).samples},
@@ -188,6 +189,7 @@ Json options_json(const ManifestInput& in) {
             {"dilate", options.dilate},
             {"two_sided", options.two_sided},
             {"ao_distance", options.ao_distance},
+            {"integrator", kIntegrators[static_cast<std::size_t>(options.integrator)]},
             {"stop", options.stop == StopRule::flux ? "flux" : "fixed"},
             {"sky", sky_json(options.sky, in.sky_hash, in.folder)},
             {"sun", sun_json(options.sun)},
@@ -212,6 +214,7 @@ Json report_json(const ManifestInput& in, const Diagnostics& diagnostics) {
     out["invalid_texels"] = report.invalid_texels;
     out["texels_per_metre"] = report.texels_per_metre;
     out["least_texels_per_metre"] = report.least_texels_per_metre;
+    out["cells"] = report.cells;
     out["samples"] = report.samples;
     out["rays"] = report.rays;
     out["rays_per_second"] = number(report.rays_per_second);

@@ -45,10 +45,7 @@ std::uint64_t enclosed_points(std::span<const SurfaceStart> starts, float reach,
     return enclosed;
 }
 
-std::size_t keep_open_points(std::span<SurfaceStart> starts, float texel_size, std::uint32_t key,
-                             const Transport& transport, std::span<Ray> rays, std::span<Hit> hits) {
-    const std::uint64_t enclosed = enclosed_points(starts, kEnclosureReach * texel_size, mix32(key), transport.tracer,
-                                                   transport.geometry, rays, hits);
+std::size_t keep_open_points(std::span<SurfaceStart> starts, std::uint64_t enclosed) {
     const auto shut = static_cast<std::size_t>(std::popcount(enclosed));
     if (shut == 0 || shut == starts.size()) return starts.size();
     std::size_t kept = 0;

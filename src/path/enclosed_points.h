@@ -27,9 +27,8 @@ std::uint64_t enclosed_points(std::span<const SurfaceStart> starts, float reach,
 // whose walls face outwards are, and the things in such rooms are not enclosed.
 inline constexpr float kEnclosureReach = 8.0f;
 
-// Moves the points of a texel that are not enclosed to the front and returns how many there are; all, in place, where
-// all are. `key`: of the texel's point set.
-std::size_t keep_open_points(std::span<SurfaceStart> starts, float texel_size, std::uint32_t key,
-                             const Transport& transport, std::span<Ray> rays, std::span<Hit> hits);
+// Moves the points that are not of the set `enclosed` to the front and returns how many there are; all, in place, where
+// all are.
+std::size_t keep_open_points(std::span<SurfaceStart> starts, std::uint64_t enclosed);
 
 }  // namespace lumel

@@ -8,20 +8,16 @@
 #include "base/try.h"
 
 namespace lumel {
-namespace {
-
-constexpr double kTexelsPerCell = 4.0;  // at so many samples:
-constexpr double kSamplesOfThat = 256.0;
-constexpr std::size_t kLinksPerCell = 256, kFewestLinks = 64;
-constexpr std::size_t kMostLinks = std::size_t{1} << 25;  // of all cells: 10 bytes each
-
-}  // namespace
+double texels_per_cell(std::uint32_t samples) {
+    constexpr double kTexelsPerCell = 4.0, kSamplesOfThat = 256.0;
+    return std::clamp(kTexelsPerCell * std::sqrt(kSamplesOfThat / static_cast<double>(samples)), 1.0,
+                      2.0 * kTexelsPerCell);
+}
 
 Result<SurfaceCells> make_lit_cells(const ChartSet& charts, const Atlas& atlas, const Transport& transport,
                                     const PathOptions& path, Context& context) {
     CellOptions options;
-    options.texels_per_cell = std::clamp(
-        kTexelsPerCell * std::sqrt(kSamplesOfThat / static_cast<double>(path.samples)), 1.0, 2.0 * kTexelsPerCell);
+    options.texels_per_cell = texels_per_cell(path.samples);
     LUMEL_TRY(SurfaceCells cells, SurfaceCells::make(transport.scene, transport.geometry, charts, atlas,
                                                      transport.tracer, options, context));
     if (cells.size() == 0) return cells;
@@ -33,7 +29,7 @@ Result<SurfaceCells> make_lit_cells(const ChartSet& charts, const Atlas& atlas, 
     const PathIntegrator integrator(into_cells, gathering);
     std::vector<PathIntegrator::WorkspacePtr> workspaces(context.threads());
     for (auto& workspace : workspaces) workspace = integrator.make_workspace();
-    const std::size_t links_each = std::clamp(kMostLinks / cells.size(), kFewestLinks, kLinksPerCell);
+    const std::size_t links_each = links_per_cell(cells.size());
     std::vector<CellLink> links(cells.size() * links_each);
     std::vector<CellGather> gathers(cells.size());
     const std::uint64_t rays_before = transport.tracer.statistics().rays;
@@ -43,8 +39,7 @@ Result<SurfaceCells> make_lit_cells(const ChartSet& charts, const Atlas& atlas, 
             std::array<SamplePoint, kSamplesPerTexel> points;
             for (std::size_t i = range.begin; i < range.end; ++i) {
                 const auto cell = static_cast<std::uint32_t>(i);
-                const std::uint32_t n =
-                    cells.sample_points(cell, transport.scene, transport.geometry, charts, points);
+                const std::uint32_t n = cells.sample_points(cell, transport.scene, transport.geometry, charts, points);
                 if (n == 0) continue;
                 integrator.gather_cell({std::span(points).first(n), cell, cells.edge(cell)}, cells.is_back(cell),
                                        *workspaces[range.worker], gathers[i],

@@ -1,13 +1,27 @@
 // Stage: the surface cells of a scene, lit.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
 #include "cells/surface_cells.h"
 #include "path/path_integrator.h"
 
 namespace lumel {
 
-// Cells for a bake of `path.samples` per texel: their edge is four texels at 256 samples and falls with the square root
-// of the count, so that what their steps cost falls with the noise. `transport.cells` must be null.
+// Edge of the cells in texels, for so many samples per texel: four at 256, falling with the square root of the count,
+// so that what their steps cost falls with the noise.
+double texels_per_cell(std::uint32_t samples);
+
+// Most links of a cell and of all cells; many cells get fewer each.
+inline constexpr std::size_t kLinksPerCell = 128, kFewestLinksPerCell = 64;
+inline constexpr std::size_t kMostLinks = std::size_t{1} << 25;
+inline std::size_t links_per_cell(std::size_t cells) {
+    return std::clamp(kMostLinks / std::max<std::size_t>(1, cells), kFewestLinksPerCell, kLinksPerCell);
+}
+
+// Cells for a bake of `path.samples` per texel. `transport.cells` must be null.
 // Error: cancelled.
 Result<SurfaceCells> make_lit_cells(const ChartSet& charts, const Atlas& atlas, const Transport& transport,
                                     const PathOptions& path, Context& context);

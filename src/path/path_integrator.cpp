@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 
 #include "base/check.h"
@@ -496,8 +497,14 @@ void PathIntegrator::gather_cell(const GatherSite& site, bool back, Workspace& w
     std::size_t n = site.points.size();
     std::fill(w.sides.begin(), w.sides.end(), static_cast<std::uint8_t>(back));
     surface_starts(site.points, std::span(w.sides).first(n), w, w.surfaces);
-    if (any_double_sided_)
-        n = keep_open_points(std::span(w.surfaces).first(n), site.texel_size, key, transport_, w.rays, w.hits);
+    if (any_double_sided_) {
+        // A texel that is shut in is gathered all the same, for it has to have some light; nobody sees such a cell.
+        const auto starts = std::span(w.surfaces).first(n);
+        const std::uint64_t enclosed = enclosed_points(starts, kEnclosureReach * site.texel_size, mix32(key),
+                                                       transport_.tracer, transport_.geometry, w.rays, w.hits);
+        if (static_cast<std::size_t>(std::popcount(enclosed)) == n) return;
+        n = keep_open_points(starts, enclosed);
+    }
     CellSink sink(links, out);
     for (std::uint32_t base = 0; base < links.size(); base += kWavefrontLanes) {
         const auto lanes = std::min<std::uint32_t>(kWavefrontLanes, static_cast<std::uint32_t>(links.size()) - base);
@@ -533,7 +540,9 @@ void PathIntegrator::gather_texel(const GatherSite& site, Workspace& w, Radiance
         std::fill(w.sides.begin(), w.sides.end(), std::uint8_t{1});
         surface_starts(points, std::span(w.sides).first(n), w, w.back_surfaces);
     } else if (any_double_sided_) {
-        n = keep_open_points(std::span(w.surfaces).first(n), site.texel_size, key, transport_, w.rays, w.hits);
+        const auto starts = std::span(w.surfaces).first(n);
+        n = keep_open_points(starts, enclosed_points(starts, kEnclosureReach * site.texel_size, mix32(key),
+                                                     transport_.tracer, transport_.geometry, w.rays, w.hits));
     }
 
     // Counts that do not fill a whole round of the points leave out others in each texel; blocks of a power of two keep
