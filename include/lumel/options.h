@@ -37,8 +37,8 @@ enum class StopRule : std::uint8_t {
 
 // Where the paths of a texel end.
 enum class Integrator : std::uint8_t {
-    automatic,  // cells from 32 samples per texel on; fewer would not pay for them
-    cells,      // at surface cells, which know the bounces beyond (docs/stages/light.md): an order of magnitude faster
+    automatic,  // cells from 32 samples per texel and 8 bounces on, else paths
+    cells,      // at surface cells, which know the bounces beyond (docs/stages/cells.md)
     paths,      // by chance or at the last bounce: brute force, for truth
 };
 

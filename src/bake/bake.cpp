@@ -59,10 +59,12 @@ PathOptions path_options(const BakeOptions& options, const WorldGeometry& geomet
 }
 
 constexpr std::uint32_t kFewestSamplesForCells = 32;  // fewer cost less than the cells would
+constexpr std::uint32_t kFewestBouncesForCells = 8;   // fewer are counted to the last, which cells do not
 
 bool uses_cells(const BakeOptions& options, const PathOptions& path) {
     if (path.bounces == 0) return false;
-    if (options.integrator == Integrator::automatic) return path.samples >= kFewestSamplesForCells;
+    if (options.integrator == Integrator::automatic)
+        return path.samples >= kFewestSamplesForCells && path.bounces >= kFewestBouncesForCells;
     return options.integrator == Integrator::cells;
 }
 
@@ -76,14 +78,14 @@ std::uint32_t edge_that_fits(std::uint32_t edge, std::uint64_t memory, unsigned 
 
 // Packs the charts so that everything fits the memory allowed. Pages shrink by halves.
 Result<Atlas> make_atlas_within_memory(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts,
-                                       ChartOptions options, double texels_per_cell, std::uint64_t max_memory,
+                                       ChartOptions options, std::uint32_t cell_samples, std::uint64_t max_memory,
                                        BakeReport& report, Context& context) {
     const bool one_page = charts.scene_wide || options.resolution_width != 0;
     const Diagnostics before = context.diagnostics;
     for (;;) {
         context.diagnostics = before;  // what a layout that is given up had to say is of no interest
         LUMEL_TRY(Atlas atlas, make_atlas(scene, geometry, charts, options, context));
-        report.predicted_memory_bytes = bake_memory(scene, geometry, atlas, texels_per_cell, context.threads());
+        report.predicted_memory_bytes = bake_memory(scene, geometry, atlas, cell_samples, context.threads());
         if (max_memory == 0 || report.predicted_memory_bytes <= max_memory) return atlas;
         if (one_page || options.max_page <= kSmallestPage) break;
         const std::uint64_t scene_bytes = scene_memory(scene, geometry, atlas);
@@ -168,7 +170,7 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
                      "give it a sky, for example --sky 1,1,1, or a sun with --sun-direction"};
 
     const PathOptions path = path_options(options, geometry);
-    const double cell_edge = uses_cells(options, path) ? texels_per_cell(path.samples) : 0.0;
+    const std::uint32_t cell_samples = uses_cells(options, path) ? path.samples : 0;
     ChartSet charts;
     Atlas atlas;
     {
@@ -177,7 +179,7 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
     }
     {
         const StageTimer timer(report, "atlas");
-        LUMEL_TRY(atlas, make_atlas_within_memory(scene, geometry, charts, chart_options(options), cell_edge,
+        LUMEL_TRY(atlas, make_atlas_within_memory(scene, geometry, charts, chart_options(options), cell_samples,
                                                   options.max_memory_bytes, report, context));
     }
     if (atlas.pages.empty())
@@ -194,7 +196,7 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
     }
     Transport transport{scene, geometry, surfaces, lights, *tracer};
     std::optional<SurfaceCells> cells;
-    if (cell_edge > 0.0) {
+    if (cell_samples > 0) {
         const StageTimer timer(report, "cells");
         LUMEL_TRY(cells, make_lit_cells(charts, atlas, transport, path, context));
         transport.cells = &*cells;

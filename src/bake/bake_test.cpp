@@ -19,7 +19,7 @@ BakeOptions small_options() {
     BakeOptions options;
     options.texels_per_metre = 8;
     options.samples = 100;  // not a multiple of the wavefront
-    options.bounces = 6;
+    options.bounces = 8;    // from which on cells are used
     return options;
 }
 

@@ -131,10 +131,11 @@ std::uint64_t page_memory(const AtlasPage& page, unsigned threads) {
     return texels * (kSumsBytes + kLightmapBytes + kBytesPerPixel) + std::max(texels * kTexelBufferBytes, rows);
 }
 
-CellMemory cell_memory(const WorldGeometry& geometry, const Atlas& atlas, double texels_per_cell) {
+CellMemory cell_memory(const WorldGeometry& geometry, const Atlas& atlas, std::uint32_t samples) {
+    const double edge = texels_per_cell(atlas, samples);
     std::uint64_t pixels = 0;
     for (const AtlasPage& page : atlas.pages) pixels += pixels_of(page);
-    const auto covered = static_cast<std::uint64_t>(static_cast<double>(pixels) / (texels_per_cell * texels_per_cell));
+    const auto covered = static_cast<std::uint64_t>(static_cast<double>(pixels) / (edge * edge));
     // Small charts are drawn larger than they are: 2 x 2 cells.
     std::uint64_t cells = covered + kLeastCellsPerChart * atlas.placements.size();
     const bool both_sides = std::ranges::any_of(
@@ -145,12 +146,12 @@ CellMemory cell_memory(const WorldGeometry& geometry, const Atlas& atlas, double
             cells * (links_per_cell(cells) * sizeof(CellLink) + sizeof(CellGather) + sizeof(Vec3))};
 }
 
-std::uint64_t bake_memory(const Scene& scene, const WorldGeometry& geometry, const Atlas& atlas, double texels_per_cell,
-                          unsigned threads) {
+std::uint64_t bake_memory(const Scene& scene, const WorldGeometry& geometry, const Atlas& atlas,
+                          std::uint32_t cell_samples, unsigned threads) {
     std::uint64_t page = 0;
     for (const AtlasPage& p : atlas.pages) page = std::max(page, page_memory(p, threads));
     CellMemory cells;
-    if (texels_per_cell > 0.0) cells = cell_memory(geometry, atlas, texels_per_cell);
+    if (cell_samples > 0) cells = cell_memory(geometry, atlas, cell_samples);
     return scene_memory(scene, geometry, atlas) + preview_memory(atlas) + picture_memory(atlas) + cells.cells +
            std::max({page, cells.links, output_memory(scene, atlas)});
 }

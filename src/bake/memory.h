@@ -23,11 +23,11 @@ std::uint64_t page_memory(const AtlasPage& page, unsigned threads);
 struct CellMemory {
     std::uint64_t cells = 0, links = 0;
 };
-CellMemory cell_memory(const WorldGeometry& geometry, const Atlas& atlas, double texels_per_cell);
+CellMemory cell_memory(const WorldGeometry& geometry, const Atlas& atlas, std::uint32_t samples);
 
 // All that `lumel bake` takes at its peak, which is the largest page, or the cells while they are lit, or the scene.glb
-// and the manifest at the end. `texels_per_cell`: edge of the cells, 0 for none.
-std::uint64_t bake_memory(const Scene& scene, const WorldGeometry& geometry, const Atlas& atlas, double texels_per_cell,
-                          unsigned threads);
+// and the manifest at the end. `cell_samples`: samples per texel of a bake with cells, else 0.
+std::uint64_t bake_memory(const Scene& scene, const WorldGeometry& geometry, const Atlas& atlas,
+                          std::uint32_t cell_samples, unsigned threads);
 
 }  // namespace lumel

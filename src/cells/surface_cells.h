@@ -6,8 +6,8 @@
 // by position. Inside a cell all points see each other, and it lends its light to a neighbour only where the two see
 // each other; what does not (a cell that a wall stands on) is no cell, and paths go on there.
 // Based on: Martin and Einarsson 2010, "A Real-Time Radiosity Architecture for Video Games" (bounces by iterating links
-// that were traced once); Wald, Ward et al. for caching irradiance. Different here: cells serve a baker whose own paths
-// look them up after one ray (a final gather), and their size follows the number of samples.
+// that were traced once); Jensen 1996, "Global Illumination using Photon Maps" (a final gather of one ray into a coarse
+// solution). Different here: the solution is a coarse bake of the same charts, and its grain follows the samples.
 #pragma once
 
 #include <array>

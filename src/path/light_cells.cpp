@@ -8,16 +8,19 @@
 #include "base/try.h"
 
 namespace lumel {
-double texels_per_cell(std::uint32_t samples) {
+double texels_per_cell(const Atlas& atlas, std::uint32_t samples) {
     constexpr double kTexelsPerCell = 4.0, kSamplesOfThat = 256.0;
-    return std::clamp(kTexelsPerCell * std::sqrt(kSamplesOfThat / static_cast<double>(samples)), 1.0,
-                      2.0 * kTexelsPerCell);
+    double texels = 0.0;
+    for (const AtlasPage& page : atlas.pages) texels += static_cast<double>(page.width) * page.height;
+    const double by_noise = std::clamp(kTexelsPerCell * std::sqrt(kSamplesOfThat / static_cast<double>(samples)), 1.0,
+                                       2.0 * kTexelsPerCell);
+    return std::max(by_noise, std::sqrt(texels / kMostCells));
 }
 
 Result<SurfaceCells> make_lit_cells(const ChartSet& charts, const Atlas& atlas, const Transport& transport,
                                     const PathOptions& path, Context& context) {
     CellOptions options;
-    options.texels_per_cell = texels_per_cell(path.samples);
+    options.texels_per_cell = texels_per_cell(atlas, path.samples);
     LUMEL_TRY(SurfaceCells cells, SurfaceCells::make(transport.scene, transport.geometry, charts, atlas,
                                                      transport.tracer, options, context));
     if (cells.size() == 0) return cells;
@@ -25,7 +28,8 @@ Result<SurfaceCells> make_lit_cells(const ChartSet& charts, const Atlas& atlas, 
     Transport into_cells = transport;
     into_cells.cells = &cells;
     PathOptions gathering = path;
-    gathering.seed = ~path.seed;  // not the paths of the texels
+    gathering.seed = ~path.seed;           // not the paths of the texels
+    gathering.bounces = path.bounces - 1;  // of which a texel's path that ends at the cell was one
     const PathIntegrator integrator(into_cells, gathering);
     std::vector<PathIntegrator::WorkspacePtr> workspaces(context.threads());
     for (auto& workspace : workspaces) workspace = integrator.make_workspace();

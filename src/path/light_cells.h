@@ -10,18 +10,22 @@
 
 namespace lumel {
 
-// Edge of the cells in texels, for so many samples per texel: four at 256, falling with the square root of the count,
-// so that what their steps cost falls with the noise.
-double texels_per_cell(std::uint32_t samples);
+// Edge of the cells of a bake in texels of its atlas, for so many samples per texel: four at 256, falling with the
+// square root of the count, so that what their steps cost falls with the noise; larger where there would be more than
+// kMostCells.
+double texels_per_cell(const Atlas& atlas, std::uint32_t samples);
 
-// Most links of a cell and of all cells; many cells get fewer each.
+// A bound of their memory: links take half a gigabyte. Charts of four cells each can still be more.
+inline constexpr double kMostCells = 400000.0;
+// Links of a cell, fewer where there are many cells.
 inline constexpr std::size_t kLinksPerCell = 128, kFewestLinksPerCell = 64;
 inline constexpr std::size_t kMostLinks = std::size_t{1} << 25;
 inline std::size_t links_per_cell(std::size_t cells) {
     return std::clamp(kMostLinks / std::max<std::size_t>(1, cells), kFewestLinksPerCell, kLinksPerCell);
 }
 
-// Cells for a bake of `path.samples` per texel. `transport.cells` must be null.
+// Cells for a bake of `path.samples` per texel. `transport.cells` must be null, and path.bounces
+// not 0. Paths that go on at a near hit may bounce once more than was asked.
 // Error: cancelled.
 Result<SurfaceCells> make_lit_cells(const ChartSet& charts, const Atlas& atlas, const Transport& transport,
                                     const PathOptions& path, Context& context);

@@ -51,10 +51,14 @@ float total(const RadianceSums& sums, std::size_t i) {
 }
 
 TEST(LightCells, TheirEdgeFallsWithTheRootOfTheSamples) {
-    EXPECT_EQ(texels_per_cell(256), 4.0);
-    EXPECT_EQ(texels_per_cell(1024), 2.0);
-    EXPECT_EQ(texels_per_cell(1u << 20), 1.0);
-    EXPECT_EQ(texels_per_cell(1), 8.0);
+    Atlas atlas;
+    atlas.pages.push_back({512, 512});
+    EXPECT_EQ(texels_per_cell(atlas, 256), 4.0);
+    EXPECT_EQ(texels_per_cell(atlas, 1024), 2.0);
+    EXPECT_EQ(texels_per_cell(atlas, 1u << 20), 1.0);
+    EXPECT_EQ(texels_per_cell(atlas, 1), 8.0);
+    atlas.pages.assign(10, {4000, 4000});
+    EXPECT_EQ(texels_per_cell(atlas, 4096), 20.0);  // 400,000 cells
 }
 
 // Radiance 2 everywhere, so irradiance 2 pi, of which a cell gets half from the walls' own light and half from bounces.
