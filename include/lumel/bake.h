@@ -43,6 +43,7 @@ struct BakeReport {
     double tracer_seconds = 0.0;      // inside the tracer's calls, summed over threads
     double rays_per_second = 0.0;     // rays over trace_wall_seconds
     // From the stored variance, before denoising: sqrt(mean variance) / mean irradiance. NaN: of single paths, unknown.
+    // Of the texels' own paths: the noise of the surface cells, which is common to many texels, is not in it.
     double estimated_nrmse = 0.0;
     double mean_irradiance[3] = {0, 0, 0};  // I = E/pi over baked texels
     double texels_per_metre = 0.0;        // reached, mean over the area; below what was asked where charts were clamped

@@ -88,12 +88,18 @@ Result<Atlas> make_atlas_within_memory(const Scene& scene, const WorldGeometry& 
         report.predicted_memory_bytes = bake_memory(scene, geometry, atlas, cell_samples, context.threads());
         if (max_memory == 0 || report.predicted_memory_bytes <= max_memory) return atlas;
         if (one_page || options.max_page <= kSmallestPage) break;
-        const std::uint64_t scene_bytes = scene_memory(scene, geometry, atlas);
-        const std::uint64_t left = max_memory > scene_bytes ? max_memory - scene_bytes : 0;
+        std::uint64_t kept = scene_memory(scene, geometry, atlas);
+        if (cell_samples > 0) {
+            const CellMemory cells = cell_memory(geometry, atlas, cell_samples);
+            if (kept + cells.cells + cells.links > max_memory) break;  // which no smaller page would help
+            kept += cells.cells;
+        }
+        const std::uint64_t left = max_memory > kept ? max_memory - kept : 0;
         options.max_page = edge_that_fits(options.max_page / 2, left, context.threads());
     }
-    const std::string remedy = one_page ? "raise --max-memory, or lower --resolution: a single page cannot be split"
-                                        : "raise --max-memory, or lower --texels-per-metre or --threads";
+    std::string remedy = one_page ? "raise --max-memory, or lower --resolution: a single page cannot be split"
+                                  : "raise --max-memory, or lower --texels-per-metre or --threads";
+    if (cell_samples > 0) remedy += "; --integrator paths needs less";
     return Error{ErrorCode::out_of_memory,
                  "this bake is predicted to need about " + megabytes(report.predicted_memory_bytes) +
                      " but --max-memory allows " + std::to_string(max_memory >> 20) + " MB",
@@ -170,7 +176,7 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
                      "give it a sky, for example --sky 1,1,1, or a sun with --sun-direction"};
 
     const PathOptions path = path_options(options, geometry);
-    const std::uint32_t cell_samples = uses_cells(options, path) ? path.samples : 0;
+    std::uint32_t cell_samples = uses_cells(options, path) ? path.samples : 0;
     ChartSet charts;
     Atlas atlas;
     {
@@ -179,8 +185,22 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
     }
     {
         const StageTimer timer(report, "atlas");
-        LUMEL_TRY(atlas, make_atlas_within_memory(scene, geometry, charts, chart_options(options), cell_samples,
-                                                  options.max_memory_bytes, report, context));
+        const Diagnostics before = context.diagnostics;
+        const auto lay_out = [&] {
+            return make_atlas_within_memory(scene, geometry, charts, chart_options(options), cell_samples,
+                                            options.max_memory_bytes, report, context);
+        };
+        Result<Atlas> laid_out = lay_out();
+        if (!laid_out.ok() && laid_out.error().code == ErrorCode::out_of_memory && cell_samples > 0 &&
+            options.integrator == Integrator::automatic) {
+            cell_samples = 0;
+            context.diagnostics = before;
+            laid_out = lay_out();
+            if (laid_out.ok())
+                context.diagnostics.add("no-cells", "--max-memory has no room for surface cells: this bake is slower",
+                                        scene.source);
+        }
+        LUMEL_TRY(atlas, std::move(laid_out));
     }
     if (atlas.pages.empty())
         return Error{ErrorCode::invalid_input, "no surface of the scene gets lightmap texels", scene.source,

@@ -55,6 +55,7 @@ TEST(Bake, TheSameBitsForOneTwoAndEightThreads) {
     BakeReport report;
     const std::string one = bake_hash(1, small_options(), &report);
     ASSERT_GT(report.texels, 500u);
+    ASSERT_GT(report.cells, 10u);
     ASSERT_GT(report.mean_irradiance[0], 0.1);
     EXPECT_EQ(one, bake_hash(2, small_options()));
     EXPECT_EQ(one, bake_hash(8, small_options()));
@@ -286,6 +287,35 @@ TEST(Bake, TooLittleMemoryIsAnErrorThatSaysHowMuchIsNeeded) {
     const auto less = bake(test::room(), options, no_sink(), context);
     ASSERT_FALSE(less.ok());
     EXPECT_EQ(megabytes_needed(less.error()), needed);
+}
+
+// Where the cells do not fit, the default bakes without them and says so; who asked for them is told what to do.
+TEST(Bake, CellsGiveWayToTheMemoryAllowed) {
+    BakeOptions options = small_options();
+    options.texels_per_metre = 60;
+    const auto run = [&](Integrator integrator, std::uint64_t megabytes) {
+        options.integrator = integrator;
+        options.samples = 1024;
+        options.max_memory_bytes = megabytes << 20;
+        Context context(2);
+        BakeSink sink = no_sink();
+        std::string end;
+        sink.layout = [&](const auto&, const auto&, const Atlas&) -> Status {
+            end = context.diagnostics.count("no-cells") > 0 ? "paths" : "as asked";
+            return Error{ErrorCode::cancelled, "seen enough", {}, {}};
+        };
+        const auto result = bake(test::room(), options, sink, context);
+        return end.empty() ? result.error().text() : end;
+    };
+    const std::string refusal = run(Integrator::cells, 1);
+    EXPECT_NE(refusal.find("--integrator paths"), std::string::npos) << refusal;
+    // Between what both need there is room for a bake without cells.
+    std::uint64_t paths = 64, cells = 64;
+    while (run(Integrator::paths, paths) != "as asked") ++paths;
+    while (run(Integrator::cells, cells) != "as asked") ++cells;
+    ASSERT_LT(paths + 1, cells);
+    EXPECT_EQ(run(Integrator::automatic, cells), "as asked");
+    EXPECT_EQ(run(Integrator::automatic, cells - 1), "paths");
 }
 
 // Pages shrink until they fit, and the warnings are those of the layout that is used.

@@ -1,6 +1,7 @@
 #include "bake/memory.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "encode/output_sizes.h"
 #include "light/emissive.h"
@@ -41,8 +42,8 @@ constexpr std::uint64_t kPictureBytes = 3;
 constexpr std::uint64_t kCellBytes = 32, kCellBytesPerTriangle = 3 * sizeof(Vec2) + 2 * sizeof(std::uint32_t);
 constexpr std::uint64_t kLeastCellsPerChart = 4;
 
-// Both atlases, and packing.
-constexpr std::uint64_t kPlacementBytes = 2 * sizeof(ChartPlacement) + 32;
+// The atlases of the bake, of the cells and of what is displayed, and packing.
+constexpr std::uint64_t kPlacementBytes = 3 * sizeof(ChartPlacement) + 32;
 // Trees of JSON. Measured on a town of 20,000 instances of one primitive and 21 charts each: about 5,500 bytes an
 // instance in scene.glb, 110 a chart in the manifest.
 constexpr std::uint64_t kGlbBytesPerInstance = 4000, kGlbBytesPerPrimitive = 4000;
@@ -136,14 +137,17 @@ CellMemory cell_memory(const WorldGeometry& geometry, const Atlas& atlas, std::u
     std::uint64_t pixels = 0;
     for (const AtlasPage& page : atlas.pages) pixels += pixels_of(page);
     const auto covered = static_cast<std::uint64_t>(static_cast<double>(pixels) / (edge * edge));
-    // Small charts are drawn larger than they are: 2 x 2 cells.
-    std::uint64_t cells = covered + kLeastCellsPerChart * atlas.placements.size();
+    // A chart n cells across has (n + 1)^2: the rim adds at most what charts of equal size would have.
+    const auto charts = static_cast<double>(atlas.placements.size());
+    const auto rims = static_cast<std::uint64_t>(2.0 * std::sqrt(static_cast<double>(covered) * charts));
+    std::uint64_t cells = covered + rims + kLeastCellsPerChart * atlas.placements.size();
     const bool both_sides = std::ranges::any_of(
         geometry.triangles, [](const WorldTriangle& triangle) { return (triangle.flags & kDoubleSided) != 0; });
-    const std::uint64_t fronts = cells * (kTexelBufferBytes + kCellBytes);
+    const std::uint64_t fronts = cells;
     if (both_sides) cells *= 2;
-    return {fronts + cells * sizeof(Vec3) * 2 + geometry.triangles.size() * kCellBytesPerTriangle,
-            cells * (links_per_cell(cells) * sizeof(CellLink) + sizeof(CellGather) + sizeof(Vec3))};
+    return {fronts * kCellBytes + cells * sizeof(Vec3) + geometry.triangles.size() * kCellBytesPerTriangle,
+            fronts * kTexelBufferBytes +
+                cells * (links_per_cell(cells) * sizeof(CellLink) + sizeof(CellGather) + 2 * sizeof(Vec3))};
 }
 
 std::uint64_t bake_memory(const Scene& scene, const WorldGeometry& geometry, const Atlas& atlas,

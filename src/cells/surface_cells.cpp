@@ -2,15 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/check.h"
 #include "base/parallel.h"
 #include "base/try.h"
+#include "texel/ray_offset.h"
 
 namespace lumel {
 namespace {
 
 constexpr float kLift = 1.0f / 16;  // of the points that look at each other, in edges of the cell
+constexpr float kSettled = 1e-4f;   // change of a cell by one more bounce, of its light
 
 // The eight texels around one, in this order.
 constexpr std::array<std::array<std::int32_t, 2>, 8> kNeighbours{
@@ -65,6 +68,9 @@ Result<SurfaceCells> SurfaceCells::make(const Scene& scene, const WorldGeometry&
 }
 
 void SurfaceCells::lay_out(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts) {
+    std::size_t count = 0;
+    for (const TexelBuffer& texels : pages_) count += texels.size();
+    sites_.reserve(count);
     for (std::uint32_t page = 0; page < pages_.size(); ++page) {
         const TexelBuffer& texels = pages_[page];
         first_cell_.push_back(static_cast<std::uint32_t>(sites_.size()));
@@ -104,20 +110,20 @@ std::uint32_t SurfaceCells::front_at(std::uint32_t page, std::int32_t x, std::in
     return first_cell_[page] + texel;
 }
 
-std::uint32_t SurfaceCells::find(std::uint32_t triangle, float b1, float b2, bool back_face, Vec2 jitter) const {
+SurfaceCells::Lookup SurfaceCells::find(std::uint32_t triangle, float b1, float b2, bool back_face, Vec2 jitter) const {
     const Corners& c = triangles_[triangle];
-    if (c.page == kNone) return kNone;
+    if (c.page == kNone) return {};
     const Vec2 p = c.uv[0] * (1.0f - b1 - b2) + c.uv[1] * b1 + c.uv[2] * b2;
     const auto x = static_cast<std::int32_t>(p.x), y = static_cast<std::int32_t>(p.y);
     const auto side = [&](std::uint32_t front) { return back_face && front != kNone ? sites_[front].back : front; };
     const std::uint32_t cell = side(front_at(c.page, x, y, c.placement));
-    if (cell == kNone || !usable_[cell]) return kNone;
+    if (cell == kNone || !usable_[cell]) return {};
     const auto jittered_x = static_cast<std::int32_t>(std::floor(p.x + jitter.x - 0.5f));
     const auto jittered_y = static_cast<std::int32_t>(std::floor(p.y + jitter.y - 0.5f));
-    if (jittered_x == x && jittered_y == y) return cell;
-    if (!(open_[cell] >> neighbour_bit(jittered_x - x, jittered_y - y) & 1u)) return cell;
+    if (jittered_x == x && jittered_y == y) return {cell, cell};
+    if (!(open_[cell] >> neighbour_bit(jittered_x - x, jittered_y - y) & 1u)) return {cell, cell};
     const std::uint32_t neighbour = side(front_at(c.page, jittered_x, jittered_y, c.placement));
-    return neighbour != kNone && usable_[neighbour] ? neighbour : cell;
+    return {cell, neighbour != kNone && usable_[neighbour] ? neighbour : cell};
 }
 
 std::uint32_t SurfaceCells::sample_points(std::uint32_t cell, const Scene& scene, const WorldGeometry& geometry,
@@ -132,6 +138,15 @@ namespace {
 Vec3 lifted(const WorldGeometry& geometry, const SamplePoint& point, float lift) {
     const auto [t, b1, b2] = point;
     return geometry.position(t, b1, b2) + geometry.shading_normal(t, b1, b2) * lift;
+}
+
+// From the surface up to the lifted point.
+Ray rise(const WorldGeometry& geometry, const SamplePoint& point, bool back, Vec3 to) {
+    const auto [t, b1, b2] = point;
+    const Vec3 from = offset_origin(geometry, t, b1, b2, geometry.geometric_normal(t) * (back ? -1.0f : 1.0f));
+    Ray ray = segment(from, to - from, std::max(length(to - from), std::numeric_limits<float>::min()));
+    ray.skip = t;
+    return ray;
 }
 
 // The point nearest to the middle of all: a texel's own centre may lie on the rim of its chart, at the foot of a wall.
@@ -152,7 +167,8 @@ const SamplePoint& middle_of(std::span<const SamplePoint> points, const WorldGeo
 }  // namespace
 
 // A cell whose sample points are not all seen from its middle is not usable; neighbours lend each other light where
-// their middles see each other. Points are lifted a little, so that roughness of the surface itself does not count.
+// their middles see each other. Points are lifted a little, so that roughness of the surface itself does not count, and
+// must see the surface below: nothing lies on a cell.
 bool SurfaceCells::find_visibility(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts,
                                    const Tracer& tracer, Context& context) {
     using Points = std::array<SamplePoint, kSamplesPerTexel>;
@@ -168,7 +184,7 @@ bool SurfaceCells::find_visibility(const Scene& scene, const WorldGeometry& geom
     });
     return placed && parallel_for(context, size(), 64, [&](const ChunkRange& range) {
                Points points;
-               std::array<Ray, kSamplesPerTexel + kNeighbours.size()> rays;
+               std::array<Ray, 2 * kSamplesPerTexel + kNeighbours.size()> rays;
                std::array<std::uint8_t, rays.size()> blocked;
                std::array<std::uint32_t, kNeighbours.size()> bits{};
                for (std::size_t i = range.begin; i < range.end; ++i) {
@@ -183,7 +199,11 @@ bool SurfaceCells::find_visibility(const Scene& scene, const WorldGeometry& geom
                        return true;
                    };
                    const std::uint32_t n = sample_points(cell, scene, geometry, charts, points);
-                   for (std::uint32_t k = 0; k < n; ++k) look_at(lifted(geometry, points[k], lift_of(cell)));
+                   for (std::uint32_t k = 0; k < n; ++k) {
+                       const Vec3 to = lifted(geometry, points[k], lift_of(cell));
+                       look_at(to);
+                       rays[count++] = rise(geometry, points[k], is_back(cell), to);
+                   }
                    const std::size_t own = count;
                    for (const auto& [dx, dy] : kNeighbours) {
                        const std::uint32_t front =
@@ -200,41 +220,50 @@ bool SurfaceCells::find_visibility(const Scene& scene, const WorldGeometry& geom
            });
 }
 
+void SurfaceCells::drop_sites() {
+    for (TexelBuffer& page : pages_) {
+        TexelBuffer kept;
+        kept.width = page.width;
+        kept.height = page.height;
+        kept.chart = std::move(page.chart);
+        kept.texel_at = std::move(page.texel_at);
+        page = std::move(kept);
+    }
+}
+
 Status SurfaceCells::solve(std::span<const CellGather> gathers, std::span<const CellLink> links, std::uint32_t bounces,
                            Context& context) {
     LUMEL_CHECK(gathers.size() == size(), gathers.size(), size());
     LUMEL_CHECK(links.size() % std::max<std::size_t>(1, size()) == 0, links.size(), size());
     const std::size_t links_each = size() == 0 ? 0 : links.size() / size();
+    // Cells that are not usable keep their light: links of others end there.
+    std::vector<Vec3> direct(size());
     for (std::size_t i = 0; i < size(); ++i) {
-        const CellGather& gather = gathers[i];
-        if (2 * gather.count <= gather.traced) usable_[i] = 0;
-        irradiance_[i] = usable_[i] ? gather.direct : Vec3{};
+        const bool sound = gathers[i].count > 0 && is_finite(gathers[i].direct);
+        if (!sound || 2 * gathers[i].count <= gathers[i].traced) usable_[i] = 0;
+        if (sound) direct[i] = gathers[i].direct;
     }
-    constexpr double kEnough = 1e-5;  // change of an iteration, of all light
+    irradiance_ = direct;
     std::vector<Vec3> next(size());
+    std::vector<std::uint8_t> settled(size());
     for (std::uint32_t bounce = 1; bounce < bounces; ++bounce) {
         const bool done = parallel_for(context, size(), 256, [&](const ChunkRange& range) {
             for (std::size_t i = range.begin; i < range.end; ++i) {
-                next[i] = {};
-                if (!usable_[i]) continue;
                 Vec3 sum{};
                 for (const CellLink& link : links.subspan(i * links_each, links_each)) {
                     if (link.from == kNone) continue;
                     const Vec3 from = irradiance_[link.from];
                     for (std::size_t c = 0; c < 3; ++c) sum[c] += static_cast<float>(link.weight[c]) * from[c];
                 }
-                next[i] = gathers[i].direct + sum * (1.0f / (32768.0f * static_cast<float>(gathers[i].count)));
+                const float paths = static_cast<float>(std::max(1u, gathers[i].count));
+                next[i] = direct[i] + sum * (1.0f / (CellLink::kOne * paths));
+                // Cell by cell: a dim room beside a bright yard has its own pace.
+                settled[i] = max_component(next[i] - irradiance_[i]) <= kSettled * max_component(next[i]) ? 1 : 0;
             }
         });
         if (!done) return cancelled();
-        double change = 0.0, total = 0.0;
-        for (std::size_t i = 0; i < size(); ++i)
-            for (std::size_t c = 0; c < 3; ++c) {
-                change += std::fabs(static_cast<double>(next[i][c]) - static_cast<double>(irradiance_[i][c]));
-                total += static_cast<double>(next[i][c]);
-            }
         std::swap(irradiance_, next);
-        if (change <= kEnough * total) break;
+        if (std::find(settled.begin(), settled.end(), 0) == settled.end()) break;
     }
     return success();
 }

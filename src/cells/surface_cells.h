@@ -25,8 +25,9 @@ namespace lumel {
 
 // Of what arrives at a cell, the share `weight` of the irradiance of another.
 struct CellLink {
-    std::uint32_t from = kNone;             // kNone: no link
-    std::array<std::uint16_t, 3> weight{};  // of 2^15: up to 2
+    static constexpr float kOne = 32768.0f;  // of `weight`
+    std::uint32_t from = kNone;              // kNone: no link
+    std::array<std::uint16_t, 3> weight{};   // up to 2
 };
 
 // What a cell gathered by paths of its own, as sums: light that reached it without another cell, and links.
@@ -51,9 +52,13 @@ public:
     // Fronts first, then the backs of double-sided ones.
     [[nodiscard]] std::size_t size() const { return usable_.size(); }
 
-    // The cell at a point of a world triangle, or kNone: nothing is known there. `jitter`, in [0, 1)^2, picks among the
-    // four nearest cells that see each other with the shares of bilinear interpolation.
-    [[nodiscard]] std::uint32_t find(std::uint32_t triangle, float b1, float b2, bool back_face, Vec2 jitter) const;
+    // The cell that a point of a world triangle lies in, and the one to take light from; both kNone where nothing is
+    // known. `jitter`, in [0, 1)^2, picks that among the four nearest cells that see each other with the shares of
+    // bilinear interpolation. Whether to take it at all must hang on `home` alone, or the jitter is no longer even.
+    struct Lookup {
+        std::uint32_t home = kNone, light = kNone;
+    };
+    [[nodiscard]] Lookup find(std::uint32_t triangle, float b1, float b2, bool back_face, Vec2 jitter) const;
 
     // Metres across a cell.
     [[nodiscard]] float edge(std::uint32_t cell) const { return site(cell).edge; }
@@ -67,10 +72,14 @@ public:
     [[nodiscard]] bool usable(std::uint32_t cell) const { return usable_[cell] != 0; }
 
     // Sets the irradiance from what all cells gathered: `gathers` of each, `links` as many for each. Bounces are
-    // iterations over the links, at no ray. Cells most of whose paths met the backs of surfaces become unusable.
+    // iterations over the links, at no ray, until no cell changes by more than 1e-4. Cells most of whose paths met the
+    // backs of surfaces become unusable.
     // Error: cancelled.
     Status solve(std::span<const CellGather> gathers, std::span<const CellLink> links, std::uint32_t bounces,
                  Context& context);
+
+    // Lets go of what only gathering needs. No sample_points() after it.
+    void drop_sites();
 
 private:
     struct Site {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
+#include <limits>
 #include <utility>
 
 #include "support/scene_builder.h"
@@ -32,7 +32,7 @@ struct Floor {
     [[nodiscard]] std::uint32_t at(float x, float z, bool back = false, Vec2 jitter = {0.5f, 0.5f}) const {
         // Corners (0,0), (4,0), (4,4) and (0,0), (4,4), (0,4) in (x, z) turned: see add_floor.
         const float u = x / 4.0f, v = 1.0f - z / 4.0f;
-        return u >= v ? cells.find(0, u - v, v, back, jitter) : cells.find(1, u, v - u, back, jitter);
+        return (u >= v ? cells.find(0, u - v, v, back, jitter) : cells.find(1, u, v - u, back, jitter)).light;
     }
 };
 
@@ -98,6 +98,7 @@ TEST(SurfaceCells, JitterDoesNotReachThroughAWall) {
         const std::uint32_t near = floor.at(2.2f, 1.0f), beyond = floor.at(2.3f, 1.0f);
         EXPECT_NE(near, beyond);
         EXPECT_NE(near, kNone);
+        EXPECT_NE(beyond, kNone);
         for (int i = 0; i < 10; ++i)
             for (int j = 0; j < 10; ++j)
                 if (floor.at(2.2f, 1.0f, false, {static_cast<float>(i) * 0.1f, static_cast<float>(j) * 0.1f}) == beyond)
@@ -129,6 +130,58 @@ TEST(SurfaceCells, BouncesAreIterationsOverTheLinks) {
     ASSERT_TRUE(floor.cells.solve(gathers, links, 64, floor.context).ok());
     EXPECT_NEAR(floor.cells.irradiance(5).y, 2.0f / 0.75f, 1e-4f);  // stops at a change of 1e-5
     EXPECT_EQ(floor.cells.irradiance(5).z, 0.0f);
+}
+
+// A bright group that has all its light at once, and a dim pair whose light takes many bounces.
+TEST(SurfaceCells, DimCellsBounceToTheirEndBesideBrightOnes) {
+    Floor floor(floor_builder());
+    const std::size_t n = floor.cells.size();
+    std::vector<CellGather> gathers(n, CellGather{{1e6f, 1e6f, 1e6f}, 1, 1});
+    std::vector<CellLink> links(n);
+    gathers[0].direct = gathers[1].direct = {1, 1, 1};
+    const auto weight = static_cast<std::uint16_t>(0.8f * CellLink::kOne);
+    links[0] = {1, {weight, weight, weight}};
+    links[1] = {0, {weight, weight, weight}};
+    ASSERT_TRUE(floor.cells.solve(gathers, links, 64, floor.context).ok());
+    EXPECT_NEAR(floor.cells.irradiance(0).x, 5.0f, 0.01f);  // 1/(1 - 0.8); the last changes are 1e-4 of it
+}
+
+TEST(SurfaceCells, ACellAmongBacksStillPassesItsLightOn) {
+    Floor floor(floor_builder());
+    const std::size_t n = floor.cells.size();
+    std::vector<CellGather> gathers(n, CellGather{{}, 4, 4});
+    std::vector<CellLink> links(n);
+    gathers[1] = {{1, 1, 1}, 1, 4};
+    links[0] = {1, {32768, 32768, 32768}};
+    ASSERT_TRUE(floor.cells.solve(gathers, links, 8, floor.context).ok());
+    EXPECT_FALSE(floor.cells.usable(1));
+    EXPECT_FLOAT_EQ(floor.cells.irradiance(0).x, 0.25f);
+}
+
+TEST(SurfaceCells, LightThatIsNoNumberStaysOut) {
+    Floor floor(floor_builder());
+    const std::size_t n = floor.cells.size();
+    std::vector<CellGather> gathers(n, CellGather{{1, 1, 1}, 1, 1});
+    std::vector<CellLink> links(n, CellLink{3, {16384, 16384, 16384}});
+    gathers[3].direct.x = std::numeric_limits<float>::infinity();
+    ASSERT_TRUE(floor.cells.solve(gathers, links, 4, floor.context).ok());
+    EXPECT_FALSE(floor.cells.usable(3));
+    for (std::uint32_t i = 0; i < n; ++i) EXPECT_TRUE(is_finite(floor.cells.irradiance(i))) << i;
+}
+
+TEST(SurfaceCells, WhereASlabLiesThereIsNoCell) {
+    test::SceneBuilder b = floor_builder();
+    const auto white = b.material({0.8f, 0.8f, 0.8f});
+    // A centimetre above the floor, lower than what the cells' middles are lifted by.
+    b.object(
+        "slab", white,
+        [](Mesh& m) {
+            test::add_box(m, {1.6f, 0.01f, 0}, {4, 0.015f, 4}, false);
+        },
+        {}, NodeClass::volume);
+    const Floor floor(std::move(b));
+    EXPECT_EQ(floor.at(1.4f, 1.0f), kNone);  // its edge is in this one
+    EXPECT_NE(floor.at(0.9f, 1.0f), kNone);
 }
 
 TEST(SurfaceCells, ACellAmongBacksOfSurfacesIsNone) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/check.h"
 #include "base/parallel.h"
 #include "base/try.h"
 
@@ -19,6 +20,7 @@ double texels_per_cell(const Atlas& atlas, std::uint32_t samples) {
 
 Result<SurfaceCells> make_lit_cells(const ChartSet& charts, const Atlas& atlas, const Transport& transport,
                                     const PathOptions& path, Context& context) {
+    LUMEL_CHECK(path.bounces > 0 && !transport.cells, path.bounces);
     CellOptions options;
     options.texels_per_cell = texels_per_cell(atlas, path.samples);
     LUMEL_TRY(SurfaceCells cells, SurfaceCells::make(transport.scene, transport.geometry, charts, atlas,
@@ -53,6 +55,7 @@ Result<SurfaceCells> make_lit_cells(const ChartSet& charts, const Atlas& atlas, 
         "cells", [&] { return transport.tracer.statistics().rays - rays_before; });
     if (!done) return Error{ErrorCode::cancelled, "the bake was cancelled", {}, {}};
     LUMEL_TRY_STATUS(cells.solve(gathers, links, path.bounces, context));
+    cells.drop_sites();
     return cells;
 }
 

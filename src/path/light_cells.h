@@ -24,8 +24,8 @@ inline std::size_t links_per_cell(std::size_t cells) {
     return std::clamp(kMostLinks / std::max<std::size_t>(1, cells), kFewestLinksPerCell, kLinksPerCell);
 }
 
-// Cells for a bake of `path.samples` per texel. `transport.cells` must be null, and path.bounces
-// not 0. Paths that go on at a near hit may bounce once more than was asked.
+// Cells for a bake of `path.samples` per texel, at least one bounce. `path.bounces` bounds the links of a chain; what a
+// cell's own paths pass before they end at the next (near hits, surfaces without cells) comes on top.
 // Error: cancelled.
 Result<SurfaceCells> make_lit_cells(const ChartSet& charts, const Atlas& atlas, const Transport& transport,
                                     const PathOptions& path, Context& context);

@@ -46,6 +46,12 @@ std::uint32_t alpha_key(const PathStart& start, std::uint32_t salt) {
     return start.key + start.index * 0x85ebca6bu + salt * 0x9e3779b9u;
 }
 
+// Which of n points a sample starts from. Counts that do not fill a whole round of the points leave out others in each
+// texel; blocks of a power of two keep the order's even spread.
+std::size_t point_of(std::uint32_t sample, std::uint32_t key, std::size_t n) {
+    return (n == kSamplesPerTexel ? sample ^ key : sample + key) % n;
+}
+
 bool is_black(Vec3 c) { return c.x <= 0.0f && c.y <= 0.0f && c.z <= 0.0f; }
 
 }  // namespace
@@ -323,8 +329,8 @@ void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w
             if (is_black(vertex.reflectance)) continue;
             if (cells) {
                 const Vec2 jitter = Sampler(starts[lane].key, starts[lane].index).pair(first_pair + kDirectionPair);
-                const std::uint32_t cell = cells->find(hit.triangle, hit.b1, hit.b2, hit.back_face, jitter);
-                if (cell != kNone && !(first && hit.t < kNearHit * cells->edge(cell))) {
+                const auto [home, cell] = cells->find(hit.triangle, hit.b1, hit.b2, hit.back_face, jitter);
+                if (home != kNone && !(first && hit.t < kNearHit * cells->edge(home))) {
                     const Vec3 share = w.throughput[lane] * vertex.reflectance * kPi;
                     if constexpr (Sink::kFromCell)
                         sink.link(lane, w.first_direction[lane], w.first_pdf[lane], cell, share);
@@ -468,13 +474,12 @@ public:
         sum_ += value * (std::max(0.0f, dot(direction, starts_[lane].normal)) * kInvPi);
     }
     void link(std::uint32_t lane, Vec3 direction, float pdf, std::uint32_t cell, Vec3 share) {
-        constexpr float kOne = 32768.0f;
         const float cosine = std::max(0.0f, dot(direction, starts_[lane].normal));
         CellLink& link = links_[first_ + lane];
         link.from = cell;
         for (std::size_t c = 0; c < 3; ++c)
-            link.weight[c] =
-                static_cast<std::uint16_t>(std::min(65535.0f, share[c] * (cosine * kInvPi / pdf * kOne) + 0.5f));
+            link.weight[c] = static_cast<std::uint16_t>(
+                std::min(65535.0f, share[c] * (cosine * kInvPi / pdf * CellLink::kOne) + 0.5f));
     }
     void end() {
         if (gather_.count > 0) gather_.direct = sum_ * (1.0f / static_cast<float>(gather_.count));
@@ -509,7 +514,7 @@ void PathIntegrator::gather_cell(const GatherSite& site, bool back, Workspace& w
     for (std::uint32_t base = 0; base < links.size(); base += kWavefrontLanes) {
         const auto lanes = std::min<std::uint32_t>(kWavefrontLanes, static_cast<std::uint32_t>(links.size()) - base);
         for (std::uint32_t lane = 0; lane < lanes; ++lane) {
-            const SurfaceStart& start = w.surfaces[(base + lane + key) % n];
+            const SurfaceStart& start = w.surfaces[point_of(base + lane, key, n)];
             w.starts[lane] = {start.origin, start.normal, key, base + lane, start.skip};
         }
         const auto starts = std::span<const PathStart>(w.starts).first(lanes);
@@ -545,9 +550,6 @@ void PathIntegrator::gather_texel(const GatherSite& site, Workspace& w, Radiance
                                                      transport_.tracer, transport_.geometry, w.rays, w.hits));
     }
 
-    // Counts that do not fill a whole round of the points leave out others in each texel; blocks of a power of two keep
-    // the order's even spread.
-    const bool all_points = n == kSamplesPerTexel;
     TexelSink sink(options_);
     const bool may_stop = options_.stop == StopRule::flux;
     const std::uint32_t step = may_stop ? (options_.samples + 9) / 10 : options_.samples;
@@ -559,8 +561,7 @@ void PathIntegrator::gather_texel(const GatherSite& site, Workspace& w, Radiance
             const std::uint32_t sample = base + lane;
             // Both sides take turns in pairs, so that each side meets every sample point.
             const bool back = both_sides && ((sample ^ (sample / kSamplesPerTexel)) & 1u) != 0;
-            const std::size_t point = (all_points ? sample ^ key : sample + key) % n;
-            const SurfaceStart& start = (back ? w.back_surfaces : w.surfaces)[point];
+            const SurfaceStart& start = (back ? w.back_surfaces : w.surfaces)[point_of(sample, key, n)];
             w.starts[lane] = {start.origin, start.normal, key, sample, start.skip};
         }
         const auto starts = std::span<const PathStart>(w.starts).first(lanes);

@@ -1,5 +1,5 @@
-// The brute-force integrator: unidirectional path tracing with next-event estimation and multiple importance sampling,
-// in wavefronts of paths. It is the truth that faster integrators are measured against.
+// The integrator: unidirectional path tracing with next-event estimation and multiple importance sampling, in
+// wavefronts of paths. Without surface cells it is brute force, the truth that all else is measured against.
 //
 // Which rays a texel sends (docs/conventions.md, "The hemisphere of a texel"): the upper hemisphere of the vertex
 // normal, with density (1/2 + cos)/(2 pi), from sample points spread over the texel. A path whose first ray meets the

@@ -24,7 +24,8 @@ Vec3 abs(Vec3 v) { return {std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)}; }
 float add_away(float x, float step) {
     const float sum = x + step;
     const std::int32_t towards = (step > 0.0f) - (step < 0.0f);
-    if (sum == 0.0f) return static_cast<float>(towards) * std::numeric_limits<float>::denorm_min();
+    constexpr std::uint32_t kLeastBelowZero = 0x80000001u, kLeastAboveZero = 1u;  // bits: denormals may be flushed
+    if (sum == 0.0f) return towards == 0 ? sum : std::bit_cast<float>(towards < 0 ? kLeastBelowZero : kLeastAboveZero);
     const auto bits = std::bit_cast<std::int32_t>(sum);
     return std::bit_cast<float>(bits + towards * (1 | (bits >> 31)));  // floats count away from zero on both sides
 }
