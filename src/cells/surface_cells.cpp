@@ -37,20 +37,19 @@ Ray segment(Vec3 from, Vec3 move, float distance) {
 }  // namespace
 
 Result<SurfaceCells> SurfaceCells::make(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts,
-                                        const Atlas& atlas, const Tracer& tracer, const CellOptions& options,
+                                        const Atlas& atlas, const Tracer& tracer, double texels_per_cell,
                                         Context& context) {
-    LUMEL_CHECK(options.texels_per_cell > 0.0, options.texels_per_cell);
+    LUMEL_CHECK(texels_per_cell > 0.0, texels_per_cell);
     SurfaceCells cells;
     ChartOptions layout;
-    layout.max_page = options.max_page;
     if (charts.scene_wide) {
         const auto shrink = [&](std::uint32_t edge) {
-            return std::max(2u, static_cast<std::uint32_t>(std::ceil(edge / options.texels_per_cell)));
+            return std::max(2u, static_cast<std::uint32_t>(std::ceil(edge / texels_per_cell)));
         };
         layout.resolution_width = shrink(atlas.pages[0].width);
         layout.resolution_height = shrink(atlas.pages[0].height);
     } else {
-        layout.texels_per_metre = atlas.texels_per_metre / options.texels_per_cell;
+        layout.texels_per_metre = atlas.texels_per_metre / texels_per_cell;
     }
     // What the cells' layout has to say of charts is no news to the user.
     const Diagnostics before = context.diagnostics;

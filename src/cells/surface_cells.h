@@ -30,23 +30,19 @@ struct CellLink {
     std::array<std::uint16_t, 3> weight{};   // up to 2
 };
 
-// What a cell gathered by paths of its own, as sums: light that reached it without another cell, and links.
+// What a cell gathered by paths of its own, apart from its links: light that reached it without another cell.
 struct CellGather {
     Vec3 direct{};            // mean over the paths that count
     std::uint32_t count = 0;  // paths that count
     std::uint32_t traced = 0;
 };
 
-struct CellOptions {
-    double texels_per_cell = 4.0;   // edge of a cell in texels of the atlas
-    std::uint32_t max_page = 4096;  // of the cells' own atlas
-};
-
 class SurfaceCells {
 public:
-    // Lays out the cells and tests who sees whom. `atlas`: that of the bake, which gives the scale. Error: cancelled.
+    // Lays out the cells and tests who sees whom. `texels_per_cell`: edge of a cell in texels of `atlas`, that of
+    // the bake. Error: cancelled.
     static Result<SurfaceCells> make(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts,
-                                     const Atlas& atlas, const Tracer& tracer, const CellOptions& options,
+                                     const Atlas& atlas, const Tracer& tracer, double texels_per_cell,
                                      Context& context);
 
     // Fronts first, then the backs of double-sided ones.

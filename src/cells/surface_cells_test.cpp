@@ -26,7 +26,7 @@ struct Floor {
         layout.texels_per_metre = 8;
         charts = make_charts(scene, geometry, layout, context).value();
         const Atlas atlas = make_atlas(scene, geometry, charts, layout, context).value();
-        cells = SurfaceCells::make(scene, geometry, charts, atlas, *tracer, {4.0, 4096}, context).value();
+        cells = SurfaceCells::make(scene, geometry, charts, atlas, *tracer, 4.0, context).value();
     }
     // The cell below a point of the floor.
     [[nodiscard]] std::uint32_t at(float x, float z, bool back = false, Vec2 jitter = {0.5f, 0.5f}) const {

@@ -21,10 +21,8 @@ double texels_per_cell(const Atlas& atlas, std::uint32_t samples) {
 Result<SurfaceCells> make_lit_cells(const ChartSet& charts, const Atlas& atlas, const Transport& transport,
                                     const PathOptions& path, Context& context) {
     LUMEL_CHECK(path.bounces > 0 && !transport.cells, path.bounces);
-    CellOptions options;
-    options.texels_per_cell = texels_per_cell(atlas, path.samples);
     LUMEL_TRY(SurfaceCells cells, SurfaceCells::make(transport.scene, transport.geometry, charts, atlas,
-                                                     transport.tracer, options, context));
+                                                     transport.tracer, texels_per_cell(atlas, path.samples), context));
     if (cells.size() == 0) return cells;
 
     Transport into_cells = transport;

@@ -15,7 +15,7 @@ namespace lumel {
 // kMostCells.
 double texels_per_cell(const Atlas& atlas, std::uint32_t samples);
 
-// A bound of their memory: links take half a gigabyte. Charts of four cells each can still be more.
+// A bound of their memory: the links of so many take 0.4 GB. Scenes of tiny charts, of four cells each, can pass it.
 inline constexpr double kMostCells = 400000.0;
 // Links of a cell, fewer where there are many cells.
 inline constexpr std::size_t kLinksPerCell = 128, kFewestLinksPerCell = 64;
