@@ -6,6 +6,7 @@
 #include "base/try.h"
 #include "io/image_codecs.h"
 #include "io/jpeg_fence.h"
+#include "io/png_fence.h"
 
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC
@@ -52,6 +53,7 @@ Result<StbHeader> read_header(std::span<const std::byte> bytes, std::uint32_t ma
     if (format != ImageFormat::png && format != ImageFormat::jpeg)
         return Error{ErrorCode::unsupported, "is neither PNG nor JPEG", where, "convert it to PNG or JPEG"};
     if (format == ImageFormat::jpeg) LUMEL_TRY_STATUS(check_jpeg_tables(bytes, where));
+    if (format == ImageFormat::png) LUMEL_TRY_STATUS(check_png_chunks(bytes, where));
     StbHeader header;
     if (stbi_info_from_memory(data(bytes), static_cast<int>(bytes.size()), &header.width, &header.height,
                               &header.channels) == 0)

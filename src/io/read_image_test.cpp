@@ -226,6 +226,17 @@ TEST(DecodeExr, ReadsPicturesOfOtherPrograms) {
     EXPECT_GT(read, 0);
 }
 
+// A PNG whose pixel data state 1 GB: stb_image would allocate it before it looks for so many bytes.
+TEST(DecodePng, RefusesChunksThatLeaveTheFile) {
+    const std::vector<std::uint8_t> pixels(2 * 3 * 4, 77);
+    std::string png;
+    for (const auto byte : encode_png(2, 3, 4, pixels)) png += static_cast<char>(byte);
+    ASSERT_TRUE(decode(png).ok());
+    const std::size_t length = png.find("IDAT") - 4;
+    png.replace(length, 4, "\x3f\x52\x47\x42");
+    EXPECT_NE(error_of(png).find("a chunk leaves the file"), std::string::npos) << error_of(png);
+}
+
 // A JPEG whose Huffman table names more symbols than there are bytes: stb_image would write beyond its arrays.
 TEST(DecodeJpeg, RefusesHuffmanTablesThatAreTooLarge) {
     std::string jpeg("\xff\xd8\xff\xc4\x01\x53\x00", 7);
