@@ -1,0 +1,58 @@
+// Scratch memory of one thread that traces paths.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "path/path_integrator.h"
+
+namespace lumel {
+
+// One lane is one path. Arrays are indexed by lane unless they say otherwise.
+class PathIntegrator::Workspace {
+public:
+    struct Vertex {
+        Vec3 position;        // on the surface, lifted towards the side the path is on
+        Vec3 normal;          // shading normal on that side
+        Vec3 face_normal;     // geometric normal on that side; zero at the start of a path, where it does not limit
+        Vec3 reflectance;     // albedo / pi
+        float direction_pdf;  // solid-angle density with which `direction` was drawn
+        Vec3 direction;
+        std::uint32_t triangle;  // that it lies on; its own rays cannot hit it
+    };
+    // A light sample waiting for its shadow ray.
+    struct Pending {
+        std::uint32_t lane;
+        Layer layer;
+        Vec3 direction;
+        Vec3 value;  // radiance over density, MIS included; times throughput after a bounce
+    };
+
+    std::array<Vertex, kWavefrontLanes> vertex;
+    std::array<Vec3, kWavefrontLanes> throughput;
+    std::array<Vec3, kWavefrontLanes> bounced;  // light gathered after the first hit, radiance of the first ray
+    std::array<Vec3, kWavefrontLanes> first_direction;
+    std::array<float, kWavefrontLanes> first_pdf;
+    std::array<std::uint32_t, kWavefrontLanes> lanes;  // of the paths still alive
+    std::array<Ray, kWavefrontLanes> rays;             // by position in `lanes`
+    std::array<Hit, kWavefrontLanes> hits;
+    std::array<AlbedoLookup, kWavefrontLanes> albedo;  // at `hits`
+
+    std::vector<Ray> shadow_rays;
+    std::vector<Pending> pending;
+    std::vector<std::uint8_t> blocked;
+
+    std::array<PathStart, kWavefrontLanes> starts;
+    std::array<SurfaceStart, kSamplesPerTexel> surfaces;
+    std::array<SurfaceStart, kSamplesPerTexel> back_surfaces;
+    std::array<std::uint8_t, kSamplesPerTexel> sides;
+};
+
+// Which of n points a sample starts from. Counts that do not fill a whole round of the points leave out others in each
+// texel; blocks of a power of two keep the order's even spread.
+inline std::size_t point_of(std::uint32_t sample, std::uint32_t key, std::size_t n) {
+    return (n == kSamplesPerTexel ? sample ^ key : sample + key) % n;
+}
+
+}  // namespace lumel
