@@ -13,7 +13,6 @@ namespace {
 
 constexpr double kRelativeFloor = 0.01;
 constexpr std::uint32_t kBlock = 16;
-constexpr double kWorstShare = 0.001;
 
 // Of a texel and a colour channel: the values that are scored together.
 using Values = std::array<double, kScoredSh>;
@@ -74,12 +73,6 @@ double mean_of(std::span<const double> values) {
     double sum = 0.0;
     for (const double v : values) sum += v;
     return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
-}
-
-double mean_without_worst(std::vector<double> errors) {
-    std::sort(errors.begin(), errors.end());
-    const auto left_out = static_cast<std::size_t>(std::ceil(kWorstShare * static_cast<double>(errors.size())));
-    return mean_of(std::span(errors).first(errors.size() - std::min(errors.size(), left_out)));
 }
 
 double sum_of_channels(Vec3 v) {

@@ -78,6 +78,7 @@ nlohmann::ordered_json to_json(const ImageMetrics& m) {
                                {"reference_mean", number(m.reference_mean)},
                                {"nrmse", number(m.nrmse)},
                                {"relmse", number(m.relmse)},
+                               {"relmse_without_worst", number(m.relmse_without_worst)},
                                {"bias", number(m.bias)},
                                {"relative_bias", number(m.relative_bias)},
                                {"block_bias_p95", number(m.block_bias_p95)},
@@ -96,7 +97,8 @@ void print(const ImageMetrics& m) {
     std::printf("texels            %llu (%llu not finite)\n", static_cast<unsigned long long>(m.texels),
                 static_cast<unsigned long long>(m.non_finite));
     std::printf("mean              %.6g, reference %.6g\n", m.mean, m.reference_mean);
-    std::printf("nRMSE             %.6g\nrelMSE            %.6g\n", m.nrmse, m.relmse);
+    std::printf("nRMSE             %.6g\nrelMSE            %.6g, without the worst 0.1 %% of texels %.6g\n", m.nrmse,
+                m.relmse, m.relmse_without_worst);
     std::printf("bias              %+.6g (%+.4f %%)\nblock bias P95    %.4f %%\n", m.bias, 100.0 * m.relative_bias,
                 100.0 * m.block_bias_p95);
     std::printf("median rel. error %.4f %%\nlog-PSNR          %.2f dB\n", 100.0 * m.median_relative_error, m.log_psnr);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "base/check.h"
 
@@ -11,6 +12,7 @@ namespace {
 
 constexpr double kRelativeFloor = 0.01;
 constexpr std::uint32_t kBlock = 16;
+constexpr double kWorstShare = 0.001;
 
 bool finite_texel(const float* texel, std::uint32_t channels) {
     return std::all_of(texel, texel + channels, [](float v) { return std::isfinite(v); });
@@ -109,22 +111,30 @@ double log_psnr(const Image& image, const Image& reference, const std::vector<st
     return mse > 0.0 ? -10.0 * std::log10(mse) : std::numeric_limits<double>::infinity();
 }
 
-std::vector<WorstTexel> worst_texels(const Image& image, const Image& reference, const std::vector<std::size_t>& texels,
-                                     double mean, std::size_t count) {
-    struct Ranked {
-        double error;
-        std::size_t texel;
-    };
-    std::vector<Ranked> ranked;
-    ranked.reserve(texels.size());
+// The terms of relMSE, means over channels, one per texel.
+std::vector<double> relative_squared_errors(const Image& image, const Image& reference,
+                                            const std::vector<std::size_t>& texels, double mean) {
+    std::vector<double> out;
+    out.reserve(texels.size());
     for (const std::size_t i : texels) {
         double error = 0.0;
         for (std::size_t k = i * image.channels; k < (i + 1) * image.channels; ++k) {
             const double r = static_cast<double>(reference.data[k]), d = static_cast<double>(image.data[k]) - r;
             error += d * d / relative_square(r, mean);
         }
-        ranked.push_back({error / image.channels, i});
+        out.push_back(error / image.channels);
     }
+    return out;
+}
+
+std::vector<WorstTexel> worst_texels(const Image& image, const Image& reference, const std::vector<std::size_t>& texels,
+                                     std::span<const double> errors, std::size_t count) {
+    struct Ranked {
+        double error;
+        std::size_t texel;
+    };
+    std::vector<Ranked> ranked(texels.size());
+    for (std::size_t k = 0; k < texels.size(); ++k) ranked[k] = {errors[k], texels[k]};
     count = std::min(count, ranked.size());
     std::partial_sort(
         ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(count), ranked.end(),
@@ -181,13 +191,14 @@ ImageMetrics compare_images(const Image& image, const Image& reference, std::spa
     out.relative_bias = out.bias / scale;
     out.channel_bias = channel_biases(image, reference, texels);
     out.nrmse = std::sqrt(mean_over(texels, channels, squared_error)) / scale;
-    out.relmse =
-        mean_over(texels, channels, [&](std::size_t k) { return squared_error(k) / relative_square(r(k), scale); });
+    const std::vector<double> errors = relative_squared_errors(image, reference, texels, scale);
+    for (const double error : errors) out.relmse += error / static_cast<double>(errors.size());
+    out.relmse_without_worst = mean_without_worst(errors);
     out.block_bias_p95 = block_bias_p95(image, reference, texels, scale);
     out.median_relative_error = median_relative_error(image, reference, texels, scale);
     out.log_psnr = log_psnr(image, reference, texels);
-    out.worst = worst_texels(image, reference, texels, scale, worst_count);
-    if (out.non_finite > 0) out.nrmse = out.relmse = std::numeric_limits<double>::infinity();
+    out.worst = worst_texels(image, reference, texels, errors, worst_count);
+    if (out.non_finite > 0) out.nrmse = out.relmse = out.relmse_without_worst = std::numeric_limits<double>::infinity();
     return out;
 }
 
@@ -208,6 +219,15 @@ double cross_relmse(const Image& image, const Image& a, const Image& b, std::spa
         return (x - static_cast<double>(a.data[k])) * (x - static_cast<double>(b.data[k])) /
                relative_square(r(k), mean);
     });
+}
+
+double mean_without_worst(std::vector<double> errors) {
+    const auto left_out = static_cast<std::size_t>(std::ceil(kWorstShare * static_cast<double>(errors.size())));
+    if (errors.size() <= left_out) return 0.0;
+    const std::size_t kept = errors.size() - left_out;
+    std::sort(errors.begin(), errors.end());
+    return std::accumulate(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(kept), 0.0) /
+           static_cast<double>(kept);
 }
 
 double percentile(std::span<double> values, double fraction) {

@@ -1,6 +1,7 @@
 // How far an image is from a reference, over the texels of a mask and all channels. The definitions:
 //   nRMSE   = sqrt(mean((x-r)^2)) / mean(r)
 //   relMSE  = mean((x-r)^2 / (r^2 + 0.01 mean(r)^2))
+//   relMSE without the worst: of the 99.9 % of texels with the smallest terms
 //   bias    = mean(x) - mean(r); block bias: the same of each 16x16-texel block
 //   logPSNR = -10 log10 mean((y(x)-y(r))^2), y(v) = ln(1+v) / ln(1+max r)
 // Based on: Rousselle et al. 2011, "Adaptive Sampling and Reconstruction using Greedy Error Minimization" (relMSE). We
@@ -34,6 +35,7 @@ struct ImageMetrics {
     std::uint64_t non_finite = 0;  // texels with a NaN or infinity in either image; nrmse and relmse are infinite then
     double mean = 0.0, reference_mean = 0.0;
     double nrmse = 0.0, relmse = 0.0;
+    double relmse_without_worst = 0.0;
     double bias = 0.0;           // signed, in the unit of the images
     double relative_bias = 0.0;  // bias / mean(r)
     std::vector<double> channel_bias;
@@ -51,6 +53,10 @@ ImageMetrics compare_images(const Image& image, const Image& reference, std::spa
 // relMSE against two independent halves of a reference: mean((x-a)(x-b) / (r^2 + 0.01 mean(r)^2)), r = (a+b)/2. The
 // references' own noise does not bias it; it may be slightly negative.
 double cross_relmse(const Image& image, const Image& a, const Image& b, std::span<const std::uint8_t> mask = {});
+
+// Mean without the largest thousandth of the errors (rounded up to whole ones), which few rare texels can own; 0 for
+// none.
+double mean_without_worst(std::vector<double> errors);
 
 // Value below which `fraction` (0..1) of the values lie, linear between neighbours; 0 for none. Reorders.
 double percentile(std::span<double> values, double fraction);
