@@ -17,7 +17,10 @@ namespace {
 constexpr float kNormalCosine = 0.8660254f;  // 30 degrees
 constexpr float kPlaneOffset = 0.5f;         // from each other's tangent plane, in texels
 constexpr float kReach = 1.8f;               // how much farther apart in the world than in texels neighbours may be
-constexpr std::size_t kRowsPerBand = 16;     // at least the largest radius
+constexpr float kUnseen = 0.01f;             // differences of so much of the brighter texel are of no interest
+constexpr float kTiny = 1e-30f;
+constexpr float kMedianOfSquaredNormal = 0.4549364f;
+constexpr std::size_t kRowsPerBand = 16;  // at least the largest radius
 
 struct Guide {
     Vec3 irradiance, variance;
@@ -32,6 +35,8 @@ public:
           k2_(options.strength * options.strength) {
         read_guides();
         smooth_variance();
+        const float share = noise_share();
+        for (Guide& guide : guides_) guide.variance *= share;
         find_row_starts();
     }
 
@@ -97,7 +102,9 @@ private:
         for (std::size_t c = 0; c < 3; ++c) {
             const float d = p.irradiance[c] - q.irradiance[c];
             const float noise = p.variance[c] + std::min(p.variance[c], q.variance[c]);
-            sum += (d * d - noise) / (floor_[c] + k2_ * (p.variance[c] + q.variance[c]));
+            const float level = std::max(p.irradiance[c], q.irradiance[c]);
+            const float unseen = kUnseen * kUnseen * level * level + kTiny;
+            sum += (d * d - noise) / (unseen + k2_ * (p.variance[c] + q.variance[c]));
         }
         return sum * (1.0f / 3.0f);
     }
@@ -123,16 +130,10 @@ private:
 
     void read_guides() {
         guides_.resize(texels_.size());
-        std::size_t valid = 0;
-        for (std::size_t i = 0; i < guides_.size(); ++i) valid += sums_.valid(i);
-        Vec3 mean{};
         for (std::size_t i = 0; i < guides_.size(); ++i) {
             if (!sums_.valid(i)) continue;
             for (const LayerMoments& layer : sums_.layers[i]) guides_[i].irradiance += layer.irradiance;
-            mean += guides_[i].irradiance * (1.0f / static_cast<float>(valid));
         }
-        // Differences below a hundredth of the page's mean are of no interest.
-        for (std::size_t c = 0; c < 3; ++c) floor_[c] = std::max(1e-30f, 1e-4f * mean[c] * mean[c]);
     }
 
     // A texel that rare light has missed states too little variance: it takes that of its surroundings.
@@ -152,6 +153,26 @@ private:
         }
     }
 
+    // What share of the stated variance the page shows. Samples that are spread evenly (Owen-scrambled Sobol points)
+    // err less than the variance among them says, by how much depends on the light. A texel against the mean of its
+    // left and right neighbours leaves noise, curvature of the light (which is why the median decides) and no slope.
+    [[nodiscard]] float noise_share() const {
+        std::vector<float> ratios;
+        for (std::size_t i = 0; i < guides_.size(); ++i) {
+            const std::uint32_t l = at(texels_.x[i] - 1, texels_.y[i]), r = at(texels_.x[i] + 1, texels_.y[i]);
+            if (!sums_.valid(i) || l == kNone || r == kNone) continue;
+            if (!are_neighbours(i, l, -1, 0) || !are_neighbours(i, r, 1, 0)) continue;
+            const Vec3 d = guides_[i].irradiance - (guides_[l].irradiance + guides_[r].irradiance) * 0.5f;
+            const Vec3 variance = guides_[i].variance + (guides_[l].variance + guides_[r].variance) * 0.25f;
+            const float stated = variance.x + variance.y + variance.z;
+            if (stated > 0.0f) ratios.push_back(dot(d, d) / stated);
+        }
+        if (ratios.empty()) return 1.0f;
+        const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
+        std::nth_element(ratios.begin(), middle, ratios.end());
+        return std::min(1.0f, *middle / kMedianOfSquaredNormal);
+    }
+
     void find_row_starts() {
         row_start_.resize(texels_.height + 1, texels_.size());
         std::size_t i = 0;
@@ -165,7 +186,6 @@ private:
     const RadianceSums& sums_;
     int radius_;
     float k2_;
-    Vec3 floor_{};
     std::vector<Guide> guides_;
     std::vector<std::size_t> row_start_;
 };
