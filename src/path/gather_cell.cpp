@@ -15,7 +15,7 @@ namespace {
 // What reaches a cell by itself, and its links.
 class CellSink {
 public:
-    static constexpr bool kFromCell = true;
+    static constexpr bool kFromCell = true, kSunsKnown = true;
 
     CellSink(std::span<CellLink> links, CellGather& gather) : links_(links), gather_(gather) {}
 
@@ -67,12 +67,13 @@ void PathIntegrator::gather_cell(const GatherSite& site, bool back, Workspace& w
         if (static_cast<std::size_t>(std::popcount(enclosed)) == n) return;
         n = keep_open_points(starts, enclosed);
     }
+    find_sunlit(std::span(w.surfaces).first(n), true, key, w);
     CellSink sink(links, out);
     for (std::uint32_t base = 0; base < links.size(); base += kWavefrontLanes) {
         const auto lanes = std::min<std::uint32_t>(kWavefrontLanes, static_cast<std::uint32_t>(links.size()) - base);
         for (std::uint32_t lane = 0; lane < lanes; ++lane) {
             const SurfaceStart& start = w.surfaces[point_of(base + lane, key, n)];
-            w.starts[lane] = {start.origin, start.normal, key, base + lane, start.skip};
+            w.starts[lane] = {start.origin, start.normal, key, base + lane, start.skip, start.sunlit};
         }
         const auto starts = std::span<const PathStart>(w.starts).first(lanes);
         sink.begin(starts, base);

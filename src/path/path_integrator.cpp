@@ -59,6 +59,7 @@ void PathIntegrator::surface_starts(std::span<const SamplePoint> points, std::sp
         out[i].normal = geometry.shading_normal(triangle, b1, b2) * side;
         out[i].origin = offset_origin(geometry, triangle, b1, b2, face_normal);
         out[i].skip = triangle;
+        out[i].sunlit = 0;
         if (!(geometry.triangles[triangle].flags & kCurved)) continue;
         out[i].skip = kNone;  // directions below the facet meet it, else they would leave a hollow through its wall
         const Vec3 move =
@@ -80,12 +81,36 @@ void PathIntegrator::surface_starts(std::span<const SamplePoint> points, std::sp
         if (!w.blocked[k]) out[w.lanes[k]].origin += w.rays[k].direction * w.rays[k].tmax;
 }
 
+void PathIntegrator::find_sunlit(std::span<SurfaceStart> starts, bool bounced, std::uint32_t key, Workspace& w) const {
+    LUMEL_CHECK(starts.size() <= kSamplesPerTexel, starts.size());
+    for (std::size_t sun = 0; sun < transport_.lights.sun_count(); ++sun) {
+        if (!path_detail::is_point_sun(transport_.lights, sun)) continue;
+        const LightSample sample = transport_.lights.sample_sun(sun, {}, bounced);
+        if (path_detail::is_black(sample.weight)) continue;
+        w.shadow_rays.clear();
+        for (std::uint32_t i = 0; i < starts.size(); ++i) {
+            if (dot(sample.direction, starts[i].normal) <= 0.0f) continue;
+            Ray ray;
+            ray.origin = starts[i].origin;
+            ray.direction = sample.direction;
+            ray.skip = starts[i].skip;
+            ray.alpha_key = key + i * 0x9e3779b9u;
+            w.lanes[w.shadow_rays.size()] = i;
+            w.shadow_rays.push_back(ray);
+        }
+        w.blocked.resize(w.shadow_rays.size());
+        transport_.tracer.occluded(w.shadow_rays, w.blocked);
+        for (std::size_t k = 0; k < w.blocked.size(); ++k)
+            if (!w.blocked[k]) starts[w.lanes[k]].sunlit |= 1u << sun;
+    }
+}
+
 namespace {
 
 // Only the irradiance of each path, for pictures.
 class IrradianceSink {
 public:
-    static constexpr bool kFromCell = false;
+    static constexpr bool kFromCell = false, kSunsKnown = false;
 
     IrradianceSink(const PathOptions& options, std::span<const PathStart> starts, std::span<Vec3> irradiance,
                    std::span<std::uint8_t> valid)
@@ -137,6 +162,8 @@ void PathIntegrator::gather_texel(const GatherSite& site, Workspace& w, Radiance
                                                      transport_.tracer, transport_.geometry, w.rays, w.hits));
     }
 
+    find_sunlit(std::span(w.surfaces).first(n), false, key, w);
+    if (both_sides) find_sunlit(std::span(w.back_surfaces).first(n), false, key, w);
     TexelSink sink(options_);
     const bool may_stop = options_.stop == StopRule::flux;
     const std::uint32_t step = may_stop ? (options_.samples + 9) / 10 : options_.samples;
@@ -149,7 +176,7 @@ void PathIntegrator::gather_texel(const GatherSite& site, Workspace& w, Radiance
             // Both sides take turns in pairs, so that each side meets every sample point.
             const bool back = both_sides && ((sample ^ (sample / kSamplesPerTexel)) & 1u) != 0;
             const SurfaceStart& start = (back ? w.back_surfaces : w.surfaces)[point_of(sample, key, n)];
-            w.starts[lane] = {start.origin, start.normal, key, sample, start.skip};
+            w.starts[lane] = {start.origin, start.normal, key, sample, start.skip, start.sunlit};
         }
         const auto starts = std::span<const PathStart>(w.starts).first(lanes);
         sink.begin(starts, both_sides ? 2.0f : 1.0f);

@@ -25,6 +25,7 @@
 namespace lumel {
 
 inline constexpr std::size_t kWavefrontLanes = 256;
+inline constexpr std::size_t kMaxPointSuns = 32;
 
 struct PathOptions {
     std::uint32_t samples = 512;
@@ -59,12 +60,14 @@ struct PathStart {
     std::uint32_t key = 0;       // point set (math/sampler.h)
     std::uint32_t index = 0;     // sample in it
     std::uint32_t skip = kNone;  // the triangle that it lies on, where no direction of the hemisphere is below it
+    std::uint32_t sunlit = 0;    // SurfaceStart::sunlit
 };
 
 // Origin and normal of a sample point: smooth position where it is reachable, else the offset flat point.
 struct SurfaceStart {
     Vec3 origin, normal;
     std::uint32_t skip = kNone;  // PathStart::skip
+    std::uint32_t sunlit = 0;    // bit k: reached by sun k, which has no size; known where many samples share the point
 };
 
 // Where a texel gathers.
@@ -107,6 +110,8 @@ public:
                         Workspace& workspace, std::span<SurfaceStart> out) const;
 
 private:
+    // Fills in `sunlit`: suns without size shine along one line, so that one ray a point serves all samples from it.
+    void find_sunlit(std::span<SurfaceStart> starts, bool bounced, std::uint32_t key, Workspace& workspace) const;
     template <class Sink>
     void trace_paths(std::span<const PathStart> starts, Workspace& workspace, Sink& sink) const;
 

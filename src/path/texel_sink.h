@@ -18,7 +18,7 @@ namespace lumel {
 // Told by the integrator of everything that happens to a texel's paths, wavefront by wavefront.
 class TexelSink {
 public:
-    static constexpr bool kFromCell = false;
+    static constexpr bool kFromCell = false, kSunsKnown = true;
 
     explicit TexelSink(const PathOptions& options)
         : ao_distance_(options.ao_distance), scale_(options.layer_scale), included_(options.included) {}

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -46,6 +47,11 @@ inline std::uint32_t alpha_key(const PathStart& start, std::uint32_t salt) {
     return start.key + start.index * 0x85ebca6bu + salt * 0x9e3779b9u;
 }
 
+// Suns that SurfaceStart::sunlit has a bit for.
+inline bool is_point_sun(const LightSet& lights, std::size_t sun) {
+    return sun < kMaxPointSuns && !lights.samples_sun(sun);
+}
+
 inline bool is_black(Vec3 c) { return c.x <= 0.0f && c.y <= 0.0f && c.z <= 0.0f; }
 
 // What a batch of paths reads at its hits lies scattered over memory: asked for in the order in which one thing leads
@@ -77,15 +83,16 @@ public:
     }
 
     // `pdf_of(cosine)`: density of the direction sampling at this vertex, for MIS. `value_of(cosine)`: what multiplies
-    // the light sample's weight.
+    // the light sample's weight. `suns_known`: suns without size are left out (SurfaceStart::sunlit).
     template <class PdfOf, class ValueOf>
-    void sample_all(std::uint32_t lane, const PathStart& start, std::uint32_t first_pair, bool bounced, PdfOf&& pdf_of,
-                    ValueOf&& value_of) {
+    void sample_all(std::uint32_t lane, const PathStart& start, std::uint32_t first_pair, bool bounced, bool suns_known,
+                    PdfOf&& pdf_of, ValueOf&& value_of) {
         const Sampler sampler(start.key, start.index);
         const auto& vertex = workspace_.vertex[lane];
         const LightSet& lights = transport_.lights;
         const std::uint32_t key = alpha_key(start, first_pair);
         for (std::size_t sun = 0; sun < lights.sun_count(); ++sun) {
+            if (suns_known && is_point_sun(lights, sun)) continue;
             const std::uint32_t pair = first_pair + kFirstSunPair + static_cast<std::uint32_t>(sun);
             const Vec2 u = lights.samples_sun(sun) ? sampler.pair(pair) : Vec2{};
             push(lane, Layer::direct, vertex, lights.sample_sun(sun, u, bounced), key, pdf_of, value_of);
@@ -134,8 +141,9 @@ private:
 }  // namespace path_detail
 
 // Sink: void_path(lane); free_path(lane, direction, pdf, distance or infinity, sky);
-// light(lane, layer, direction, radiance over density). kFromCell: the start is a cell's, whose light is what a bounce
-// sees of it, and paths that end at a cell are links: link(lane, direction, pdf, cell, share of its irradiance).
+// light(lane, layer, direction, radiance over density). kSunsKnown: PathStart::sunlit is filled in. kFromCell: the
+// start is a cell's, whose light is what a bounce sees of it, and paths that end at a cell are links: link(lane,
+// direction, pdf, cell, share of its irradiance).
 template <class Sink>
 void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w, Sink& sink) const {
     using namespace path_detail;
@@ -185,8 +193,13 @@ void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w
     {
         LightQueue<Workspace> queue(transport_, w);
         for (std::uint32_t lane = 0; lane < count; ++lane) {
+            for (std::uint32_t bits = starts[lane].sunlit; bits != 0; bits &= bits - 1) {
+                const LightSample sun = lights.sample_sun(std::countr_zero(bits), {}, Sink::kFromCell);
+                sink.light(lane, Layer::direct, sun.direction, sun.weight);
+            }
             queue.sample_all(
-                lane, starts[lane], 0, Sink::kFromCell, [](float cosine) { return GatherHemisphere::pdf(cosine); },
+                lane, starts[lane], 0, Sink::kFromCell, Sink::kSunsKnown,
+                [](float cosine) { return GatherHemisphere::pdf(cosine); },
                 [](float) {
                     return Vec3{1, 1, 1};
                 });
@@ -270,7 +283,7 @@ void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w
             const std::uint32_t lane = w.lanes[i];
             const Vec3 scale = w.throughput[lane] * w.vertex[lane].reflectance;
             queue.sample_all(
-                lane, starts[lane], first_pair, true, [](float cosine) { return CosineHemisphere::pdf(cosine); },
+                lane, starts[lane], first_pair, true, false, [](float cosine) { return CosineHemisphere::pdf(cosine); },
                 [&](float cosine) { return scale * cosine; });
         }
         queue.resolve([&](const auto& event) { w.bounced[event.lane] += event.value; });
