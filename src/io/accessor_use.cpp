@@ -3,13 +3,6 @@
 namespace lumel {
 namespace {
 
-std::uint32_t index_of(const Json& value) { return value.is_number_unsigned() ? value.get<std::uint32_t>() : kNone; }
-
-std::uint32_t index_of(const Json& object, const char* key) {
-    const Json* value = find(object, key);
-    return value ? index_of(*value) : kNone;
-}
-
 // Calls visit for the elements of the array `key`, if there is one.
 template <class Visit>
 void for_each(const Json& object, const char* key, Visit&& visit) {
@@ -46,14 +39,14 @@ void note_accessor_use_without(const Json& root, const std::set<std::uint32_t>& 
         if (meshes.count(m++)) return;
         for_each(mesh, "primitives", [&](const Json& primitive) {
             note_vertex_accessors(primitive, use);
-            use.note_indices(index_of(primitive, "indices"));
+            use.note_indices(index_at(primitive, "indices"));
         });
     });
-    for_each(root, "skins", [&](const Json& skin) { use.note_other(index_of(skin, "inverseBindMatrices")); });
+    for_each(root, "skins", [&](const Json& skin) { use.note_other(index_at(skin, "inverseBindMatrices")); });
     for_each(root, "animations", [&](const Json& animation) {
         for_each(animation, "samplers", [&](const Json& sampler) {
-            use.note_other(index_of(sampler, "input"));
-            use.note_other(index_of(sampler, "output"));
+            use.note_other(index_at(sampler, "input"));
+            use.note_other(index_at(sampler, "output"));
         });
     });
     std::uint32_t n = 0;

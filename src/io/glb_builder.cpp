@@ -101,6 +101,19 @@ std::uint32_t GlbBuilder::add_unsigned(std::span<const std::uint32_t> values, Vi
     return add_array(std::span<const std::uint16_t>(narrow), Component::uint16, "SCALAR", narrow.size(), target);
 }
 
+std::uint32_t GlbBuilder::add_elements(std::span<const std::byte> packed, std::uint32_t components,
+                                       std::size_t component_bytes, const Json& accessor, ViewTarget target) {
+    const auto aligned = [](std::size_t size) { return (size + kAlignment - 1) / kAlignment * kAlignment; };
+    const Json* type = find(accessor, "type");
+    const std::size_t columns = !type ? 1 : *type == "MAT2" ? 2 : *type == "MAT3" ? 3 : *type == "MAT4" ? 4 : 1;
+    const std::size_t column = components / columns * component_bytes;
+    if (columns > 1 && column % kAlignment != 0) return add_view(pad_elements(packed, column, aligned(column)), target);
+    const std::size_t element = components * component_bytes;
+    if (target != ViewTarget::vertices) return add_view(packed, target);
+    if (element % kAlignment == 0) return add_view(packed, target, element);
+    return add_view(pad_elements(packed, element, aligned(element)), target, aligned(element));
+}
+
 Json GlbBuilder::accessor_json(std::uint32_t view, std::size_t offset, Component component, const char* type,
                                std::size_t count) {
     Json out = {{"bufferView", view}};
@@ -161,19 +174,6 @@ std::vector<std::byte> pad_elements(std::span<const std::byte> packed, std::size
     std::vector<std::byte> out(count * stride);
     for (std::size_t i = 0; i < count; ++i) std::memcpy(&out[i * stride], &packed[i * element], element);
     return out;
-}
-
-void add_to_list(Json& root, const char* key, const std::string& name) {
-    Json& list = root[key];
-    if (!list.is_array()) list = Json::array();
-    if (std::find(list.begin(), list.end(), name) == list.end()) list.push_back(name);
-}
-
-void remove_from_list(Json& root, const char* key, const std::string& name) {
-    const auto at = root.find(key);
-    if (at == root.end() || !at->is_array()) return;
-    at->erase(std::remove(at->begin(), at->end(), name), at->end());
-    if (at->empty()) root.erase(key);
 }
 
 }  // namespace lumel

@@ -31,6 +31,10 @@ public:
     // A new bufferView over bytes appended to the buffer. `stride` 0: tightly packed.
     std::uint32_t add_view(std::span<const std::byte> bytes, ViewTarget target, std::size_t stride = 0);
     void put_view(std::uint32_t index, std::span<const std::byte> bytes, ViewTarget target, std::size_t stride = 0);
+    // Packed elements as a view of their own, padded as glTF wants it for vertex attributes and matrix columns.
+    // `accessor` says its type.
+    std::uint32_t add_elements(std::span<const std::byte> packed, std::uint32_t components, std::size_t component_bytes,
+                               const Json& accessor, ViewTarget target);
     // A number for a view whose bytes come later by put_view.
     std::uint32_t reserve_view();
 
@@ -66,9 +70,5 @@ private:
 // Attributes want each element on a multiple of four bytes, and so the columns of matrices: rows of `count` elements of
 // `element` bytes padded to `stride`.
 std::vector<std::byte> pad_elements(std::span<const std::byte> packed, std::size_t element, std::size_t stride);
-
-// Appends to the string array `key` of the root unless it is there; and takes out, the key with the last.
-void add_to_list(Json& root, const char* key, const std::string& name);
-void remove_from_list(Json& root, const char* key, const std::string& name);
 
 }  // namespace lumel

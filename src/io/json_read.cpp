@@ -177,6 +177,13 @@ std::size_t array_size(const Json& object, const char* key) {
     return array && array->is_array() ? array->size() : 0;
 }
 
+std::uint32_t index_of(const Json& value) { return value.is_number_unsigned() ? value.get<std::uint32_t>() : kNone; }
+
+std::uint32_t index_at(const Json& object, const char* key) {
+    const Json* value = find(object, key);
+    return value ? index_of(*value) : kNone;
+}
+
 Status read_numbers(const Json& array, const char* key, double* out, std::size_t size, const std::string& where) {
     const Error wrong = invalid(where, quoted(key) + " must be an array of " + std::to_string(size) + " numbers");
     if (!array.is_array() || array.size() != size) return wrong;

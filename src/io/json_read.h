@@ -11,6 +11,7 @@
 
 #include "base/try.h"
 #include "lumel/result.h"
+#include "lumel/scene.h"
 
 namespace lumel {
 
@@ -49,6 +50,9 @@ Result<const Json*> element(const Json& object, const char* key, std::uint64_t i
 Status element_exists(const Json& object, const char* key, std::uint64_t index, const std::string& where);
 // Length of the array `key`, 0 where absent or of another type.
 std::size_t array_size(const Json& object, const char* key);
+// A reference by number in a document that was checked before: kNone where absent.
+std::uint32_t index_of(const Json& value);
+std::uint32_t index_at(const Json& object, const char* key);
 
 // Required members.
 Result<std::uint64_t> required_count(const Json& object, const char* key, const std::string& where);

@@ -58,8 +58,8 @@ std::string name_of(const Json& material) {
 
 }  // namespace
 
-bool LitMaterials::uses_uv1(std::uint32_t material) const {
-    return material != kNone && names_uv1(root_["materials"][material]);
+bool uses_uv1(const Json& root, std::uint32_t material) {
+    return material != kNone && names_uv1(root["materials"][material]);
 }
 
 bool LitMaterials::is_unlit(std::uint32_t material) const {

@@ -16,6 +16,9 @@ struct PageTexture {
     float strength = 1.0f;      // times its value is albedo x E/pi
 };
 
+// Does any texture of the material (kNone: the default one) use TEXCOORD_1?
+bool uses_uv1(const Json& root, std::uint32_t material);
+
 class LitMaterials {
 public:
     // Appends to root["materials"]; borrows it.
@@ -26,8 +29,6 @@ public:
     // is: they are returned as they are.
     std::uint32_t lit(std::uint32_t material, std::uint32_t page, std::uint32_t old_uv1);
 
-    // Does any texture of the material use TEXCOORD_1?
-    [[nodiscard]] bool uses_uv1(std::uint32_t material) const;
     [[nodiscard]] bool is_unlit(std::uint32_t material) const;
 
 private:

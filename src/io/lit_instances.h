@@ -1,0 +1,17 @@
+// The lightmapped instances of scene.glb: each a mesh object of its own over shared geometry, with its lightmap UVs,
+// its materials and the transforms of its charts.
+#pragma once
+
+#include <vector>
+
+#include "io/glb_builder.h"
+#include "io/lit_materials.h"
+#include "io/lit_mesh_plan.h"
+
+namespace lumel {
+
+// `primitives`: of each of the plan's geometries (lit_geometry.h).
+void write_lit_instances(const GltfWriteInput& input, const LitMeshPlan& plan,
+                         const std::vector<std::vector<Json>>& primitives, LitMaterials& materials, GlbBuilder& glb);
+
+}  // namespace lumel
