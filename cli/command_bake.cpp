@@ -7,6 +7,7 @@
 
 #include "bake/memory.h"
 #include "bake/stage_timer.h"
+#include "base/cancelled.h"
 #include "base/progress_parts.h"
 #include "base/try.h"
 #include "command.h"
@@ -180,7 +181,7 @@ Status run(const Options& options) {
                                      memory_for_views(bake_options, report), context));
     }
     LUMEL_TRY_STATUS(writer.finish(report, context.diagnostics));
-    if (!run_context.interrupt().begin_commit()) return Error{ErrorCode::cancelled, "the bake was cancelled", {}, {}};
+    if (!run_context.interrupt().begin_commit()) return cancelled_error();
     LUMEL_TRY_STATUS(writer.commit());
     run_context.finish();
     print_summary(report, options.output);

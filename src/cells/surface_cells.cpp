@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/cancelled.h"
 #include "base/check.h"
 #include "base/parallel.h"
 #include "base/try.h"
@@ -22,8 +23,6 @@ std::uint32_t neighbour_bit(std::int32_t dx, std::int32_t dy) {
     const std::int32_t index = (dy + 1) * 3 + (dx + 1);
     return static_cast<std::uint32_t>(index > 4 ? index - 1 : index);
 }
-
-Error cancelled() { return {ErrorCode::cancelled, "the bake was cancelled", {}, {}}; }
 
 // From one point to another; they must not coincide.
 Ray segment(Vec3 from, Vec3 move, float distance) {
@@ -62,7 +61,7 @@ Result<SurfaceCells> SurfaceCells::make(const Scene& scene, const WorldGeometry&
     }
     context.diagnostics = before;
     cells.lay_out(scene, geometry, charts);
-    if (!cells.find_visibility(scene, geometry, charts, tracer, context)) return cancelled();
+    if (!cells.find_visibility(scene, geometry, charts, tracer, context)) return cancelled_error();
     return cells;
 }
 
@@ -260,7 +259,7 @@ Status SurfaceCells::solve(std::span<const CellGather> gathers, std::span<const 
                 settled[i] = max_component(next[i] - irradiance_[i]) <= kSettled * max_component(next[i]) ? 1 : 0;
             }
         });
-        if (!done) return cancelled();
+        if (!done) return cancelled_error();
         std::swap(irradiance_, next);
         if (std::find(settled.begin(), settled.end(), 0) == settled.end()) break;
     }

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <string>
 
+#include "base/cancelled.h"
 #include "base/check.h"
 #include "base/try.h"
 #include "chart/chart_set.h"
@@ -12,8 +13,6 @@
 
 namespace lumel {
 namespace {
-
-Error cancelled_error() { return {ErrorCode::cancelled, "cancelled while packing", "", ""}; }
 
 // Placement ranges: as many as the instance's mesh has charts, none for instances without texels.
 std::vector<std::uint32_t> placement_ranges(const Scene& scene, const ChartSet& charts) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "base/cancelled.h"
 #include "base/check.h"
 #include "base/parallel.h"
 #include "base/try.h"
@@ -21,8 +22,6 @@
 
 namespace lumel {
 namespace {
-
-Error cancelled_error() { return {ErrorCode::cancelled, "cancelled while unwrapping", "", ""}; }
 
 // The meshes that some lightmap instance uses, largest first, so that threads share the work evenly.
 struct UsedMeshes {

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "base/cancelled.h"
 #include "base/parallel.h"
 
 namespace lumel {
@@ -201,7 +202,7 @@ Result<double> solve_density(const ChartSet& charts, const std::vector<ChartInst
     double low = 0.0, high = 2.0 * std::sqrt(target / unit), density = 0.25 * high;
     for (int step = 0; step < 24; ++step) {
         const std::optional<SizedCharts> sized = size_charts(charts, instances, density, limit, context);
-        if (!sized) return Error{ErrorCode::cancelled, "cancelled", "", ""};
+        if (!sized) return cancelled_error();
         const double used = static_cast<double>(sized->used);
         if (std::abs(used - target) <= 0.005 * target) break;
         (used < target ? low : high) = density;

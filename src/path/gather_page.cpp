@@ -1,6 +1,7 @@
 // The texels of a page, on all threads.
 #include <array>
 
+#include "base/cancelled.h"
 #include "base/check.h"
 #include "base/parallel.h"
 #include "base/try.h"
@@ -56,7 +57,7 @@ Result<RadianceSums> gather_page(const TexelBuffer& texels, const ChartSet& char
             }
         },
         "trace", [&] { return transport.tracer.statistics().rays - rays_before; });
-    if (!done || context.cancelled()) return Error{ErrorCode::cancelled, "the bake was cancelled", {}, {}};
+    if (!done || context.cancelled()) return cancelled_error();
     return sums;
 }
 

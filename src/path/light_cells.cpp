@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/cancelled.h"
 #include "base/check.h"
 #include "base/parallel.h"
 #include "base/try.h"
@@ -51,7 +52,7 @@ Result<SurfaceCells> make_lit_cells(const ChartSet& charts, const Atlas& atlas, 
             }
         },
         "cells", [&] { return transport.tracer.statistics().rays - rays_before; });
-    if (!done) return Error{ErrorCode::cancelled, "the bake was cancelled", {}, {}};
+    if (!done) return cancelled_error();
     LUMEL_TRY_STATUS(cells.solve(gathers, links, path.bounces, context));
     cells.drop_sites();
     return cells;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/cancelled.h"
 #include "base/check.h"
 #include "base/parallel.h"
 
@@ -213,7 +214,7 @@ Status denoise(const TexelBuffer& texels, const DenoiseOptions& options, Radianc
         const bool done = parallel_for(context, count, 64, [&](const ChunkRange& range) {
             for (std::size_t i = range.begin; i < range.end; ++i) denoiser.filter(first + i, now[i]);
         });
-        if (!done) return Error{ErrorCode::cancelled, "the bake was cancelled", {}, {}};
+        if (!done) return cancelled_error();
         write_back(before, first_before, sums);
         std::swap(now, before);
         first_before = first;

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/cancelled.h"
 #include "base/check.h"
 #include "base/try.h"
 #include "post/lightmap.h"
@@ -73,8 +74,6 @@ struct Pixel {
 };
 
 constexpr std::size_t kLookEvery = 4096;  // texels between two looks at whether the bake was cancelled
-
-Error cancelled_error() { return {ErrorCode::cancelled, "the bake was cancelled", {}, {}}; }
 
 // Mean of the 3x3 neighbours of one chart that have a value.
 Average average_around(const Lightmap& map, Pixel p, std::uint32_t chart) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/cancelled.h"
 #include "base/parallel.h"
 #include "base/progress_parts.h"
 #include "base/try.h"
@@ -212,7 +213,7 @@ Result<Image> render_picture(const Transport& transport, const PathOptions& path
                 }
             },
             "render", [&] { return transport.tracer.statistics().rays - rays_before; });
-        if (!done) return Error{ErrorCode::cancelled, "the render was cancelled", {}, {}};
+        if (!done) return cancelled_error("the render was cancelled");
     }
     return image;
 }

@@ -4,6 +4,7 @@
 #include <bit>
 #include <string>
 
+#include "base/cancelled.h"
 #include "base/check.h"
 #include "base/parallel.h"
 #include "texel/texel_buffer.h"
@@ -63,7 +64,7 @@ public:
                                                                      rasterize(static_cast<std::uint32_t>(range.index));
                                                              },
                                                              "texels");
-        if (!done) return Error{ErrorCode::cancelled, "the bake was cancelled", {}, {}};
+        if (!done) return cancelled_error();
         report_overlaps(bands);
         return join(bands);
     }

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "base/cancelled.h"
 #include "base/parallel.h"
 
 namespace lumel {
@@ -26,7 +27,7 @@ Result<TexelSurface> read_texel_surface(const TexelBuffer& texels, const Scene& 
             out.emission[i] = emission * (1.0f / static_cast<float>(n));
         }
     });
-    if (!done) return Error{ErrorCode::cancelled, "the bake was cancelled", {}, {}};
+    if (!done) return cancelled_error();
     return out;
 }
 

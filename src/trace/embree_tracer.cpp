@@ -21,6 +21,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/cancelled.h"
 #include "base/check.h"
 #include "base/denormals.h"
 #include "trace/tracer.h"
@@ -252,7 +253,7 @@ std::string describe(RTCDevice device, const char* isa) {
 constexpr const char* kMemoryRemedy = "use a machine with more memory or a smaller scene";
 
 Error embree_error(RTCError code, const std::string& doing) {
-    if (code == RTC_ERROR_CANCELLED) return {ErrorCode::cancelled, "cancelled while building the tree of rays", {}, {}};
+    if (code == RTC_ERROR_CANCELLED) return cancelled_error();
     const std::string message = "Embree failed " + doing + " (error " + std::to_string(static_cast<int>(code)) + ")";
     if (code == RTC_ERROR_UNSUPPORTED_CPU) return {ErrorCode::unsupported, message, {}, {}};
     return {ErrorCode::out_of_memory, message, {}, kMemoryRemedy};
