@@ -30,10 +30,10 @@ constexpr std::uint64_t kTexelBufferBytes = 4 + 8 + 4 + 2 * sizeof(Vec3) + 4 + 4
 constexpr std::uint64_t kLightmapBytes = 2 * sizeof(Vec3) + 1 + 4 + 2 * sizeof(Vec3) + sizeof(float);
 constexpr std::uint64_t kBytesPerPixel = 3 * sizeof(std::uint32_t);  // texel_at of both, readers
 
-// Rows of the master, the widest file, on one thread: a block, and two chunks that OpenEXR compresses, each with what
-// went in, what comes out and room to sort the bytes in.
+// Rows of the master, the widest file, on one thread: as they were filled, as OpenEXR packs them, room to sort the
+// bytes in, room for what comes out (which may be larger: 1.3 times), and what came out.
 constexpr std::uint64_t kMasterPixelBytes = sizeof(float) * (kLayerCount * (3 * kShCoefficients + 3) + 5);
-constexpr std::uint64_t kCopiesOfRows = 1 + 2 * 3;
+constexpr std::uint64_t kCopiesOfRows = 6;
 
 // Of a page, once it is written, there stay: previews, and the picture for scene.glb, which noise does not let compress
 // by much.

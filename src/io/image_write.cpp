@@ -1,4 +1,4 @@
-// PNG, Radiance HDR, PFM and plain files. EXR is in exr_write.cpp.
+// Radiance HDR, PFM and plain files. EXR is in exr_write.cpp, PNG in png_write.cpp.
 #include <bit>
 #include <cstring>
 
@@ -25,23 +25,6 @@ void append_text(std::vector<std::byte>& out, const std::string& text) {
 }
 
 }  // namespace
-
-std::vector<std::byte> encode_png(std::uint32_t width, std::uint32_t height, std::uint32_t channels,
-                                  std::span<const std::uint8_t> pixels) {
-    LUMEL_CHECK(width > 0 && height > 0 && channels >= 1 && channels <= 4, width, height, channels);
-    LUMEL_CHECK(pixels.size() == std::size_t{width} * height * channels, pixels.size(), width, height, channels);
-    std::vector<std::byte> out;
-    const int ok =
-        stbi_write_png_to_func(append, &out, static_cast<int>(width), static_cast<int>(height),
-                               static_cast<int>(channels), pixels.data(), static_cast<int>(width * channels));
-    LUMEL_CHECK(ok != 0, width, height, channels);  // stb fails only where memory runs out
-    return out;
-}
-
-Status write_png(const std::filesystem::path& path, std::uint32_t width, std::uint32_t height, std::uint32_t channels,
-                 std::span<const std::uint8_t> pixels) {
-    return write_file(path, encode_png(width, height, channels, pixels));
-}
 
 Status write_hdr(const std::filesystem::path& path, const Image& rgb) {
     LUMEL_CHECK(rgb.channels >= 1 && rgb.width > 0 && rgb.height > 0, rgb.channels, rgb.width, rgb.height);

@@ -123,6 +123,26 @@ TEST(WriteExr, AnyNumberOfThreadsWritesTheSameFile) {
     }
 }
 
+// Of seven chunks of 16 rows, the last one of four, two hold something: the others are written without being
+// compressed.
+TEST(WriteExr, EmptyChunksAreZeroInTheirPlaces) {
+    const TemporaryFolder folder;
+    const std::vector<ExrChannelSource> channels{{"R", ExrType::full}, {"A", ExrType::half}};
+    const auto has_light = [](std::uint32_t y) { return y == 36 || y == 64; };
+    const auto row = [&](std::uint32_t y, std::span<float> out) {
+        for (std::size_t i = 0; i < out.size(); ++i) out[i] = float(y + i);  // not looked at where the row is empty
+        return has_light(y);
+    };
+    ASSERT_TRUE(write_exr(folder / "e.exr", 6, 100, channels, row).ok());
+    const std::vector<std::string> names{"R", "A"};
+    const auto read = read_exr_channels(folder / "e.exr", names);
+    ASSERT_TRUE(read.ok()) << read.error().text();
+    for (std::uint32_t y = 0; y < 100; ++y)
+        for (std::uint32_t x = 0; x < 6; ++x)
+            for (std::uint32_t c = 0; c < 2; ++c)
+                ASSERT_EQ(read->planes[c][6 * y + x], has_light(y) ? float(y + 6 * c + x) : 0.0f) << x << " " << y;
+}
+
 TEST(WriteExr, StopsBetweenRowsWhereCancelled) {
     const TemporaryFolder folder;
     Context context(2);
@@ -150,6 +170,29 @@ TEST(WritePng, RoundTripsEightBits) {
     for (std::size_t i = 0; i < 16 * 9; ++i)
         for (std::size_t c = 0; c < 3; ++c)
             EXPECT_EQ(std::lround(read->data[i * read->channels + c] * 255), pixels[3 * i + c]);
+}
+
+// Rows that each filter of PNG suits best: nothing, noise, steps along the row, the row above again, a slope both ways.
+TEST(WritePng, RoundTripsWhateverTheRowsAre) {
+    const TemporaryFolder folder;
+    constexpr std::uint32_t kWidth = 40, kHeight = 60;
+    for (const std::uint32_t channels : {1u, 3u, 4u}) {
+        std::vector<std::uint8_t> pixels(std::size_t{kWidth} * kHeight * channels);
+        for (std::uint32_t y = 0; y < kHeight; ++y)
+            for (std::uint32_t i = 0; i < kWidth * channels; ++i) {
+                const std::uint32_t x = i / channels, noise = (y * 2654435761u + i * 40503u) * 2246822519u >> 24;
+                const std::uint32_t kinds[] = {0u, noise, 6 * x, 200 - x * x / 10, 3 * x + 2 * y, 0u};
+                pixels[std::size_t{y} * kWidth * channels + i] = static_cast<std::uint8_t>(kinds[y / 10]);
+            }
+        ASSERT_TRUE(write_png(folder / "a.png", kWidth, kHeight, channels, pixels).ok());
+        const auto read = read_image(folder / "a.png");
+        ASSERT_TRUE(read.ok()) << read.error().text();
+        ASSERT_EQ(read->width, kWidth);
+        ASSERT_GE(read->channels, channels);
+        for (std::size_t i = 0; i < std::size_t{kWidth} * kHeight; ++i)
+            for (std::size_t c = 0; c < channels; ++c)
+                ASSERT_EQ(std::lround(read->data[i * read->channels + c] * 255), pixels[channels * i + c]) << i;
+    }
 }
 
 TEST(WriteHdr, RoundTripsWithinTheSharedExponent) {
