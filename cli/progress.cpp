@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <map>
 #include <string>
 
 #include "command.h"
@@ -49,20 +50,23 @@ public:
 
     void show(const Progress& progress) {
         const auto now = Clock::now();
-        if (progress.stage != stage_) {
+        const bool resumed = progress.stage != name_;
+        if (resumed) {
             end_line();
-            stage_ = progress.stage;
-            start_ = now;
-            // A bar appears at once, a line only where the stage takes long.
-            shown_ = style_ == ProgressStyle::plain ? now : Clock::time_point{};
+            name_ = progress.stage;
         }
-        const double elapsed = std::chrono::duration<double>(now - start_).count();
-        const double every = style_ == ProgressStyle::plain ? 5.0 : 0.1;
         const bool done = progress.fraction >= 1.0;
-        if (!done && std::chrono::duration<double>(now - shown_).count() < every) return;
-        if (done && finished_ == stage_) return;
-        shown_ = now;
-        if (done) finished_ = stage_;
+        Stage& stage = stages_[name_];
+        if (stage.finished && !done) stage = {};
+        if (!resumed) stage.seconds += std::chrono::duration<double>(now - last_).count();
+        last_ = now;
+        // A bar appears at once, a line only where the stage takes long.
+        const bool is_due = style_ == ProgressStyle::plain ? stage.seconds - stage.shown >= 5.0
+                                                           : resumed || stage.seconds - stage.shown >= 0.1;
+        if (stage.finished || (!done && !is_due)) return;
+        stage.shown = stage.seconds;
+        stage.finished = done;
+        const double elapsed = stage.seconds;
         const double left = progress.fraction > 0.0 ? elapsed / progress.fraction - elapsed : 0.0;
         const double rate = elapsed > 0.0 ? static_cast<double>(progress.rays) / elapsed * 1e-6 : 0.0;
         switch (style_) {
@@ -71,11 +75,11 @@ public:
                 std::fprintf(
                     stderr,
                     "{\"stage\":\"%s\",\"fraction\":%.4f,\"seconds\":%.2f,\"seconds_left\":%.2f,\"rays\":%llu}\n",
-                    stage_.c_str(), progress.fraction, elapsed, left, static_cast<unsigned long long>(progress.rays));
+                    name_.c_str(), progress.fraction, elapsed, left, static_cast<unsigned long long>(progress.rays));
                 break;
             case ProgressStyle::plain:
                 if (done && elapsed < 0.5) break;
-                std::fprintf(stderr, "%s: %.0f %%, %s%s%s\n", stage_.c_str(), 100.0 * progress.fraction,
+                std::fprintf(stderr, "%s: %.0f %%, %s%s%s\n", name_.c_str(), 100.0 * progress.fraction,
                              duration(elapsed).c_str(), rate_text(progress.rays, rate).c_str(),
                              done ? "" : (", " + left_text(progress.fraction, left)).c_str());
                 break;
@@ -91,12 +95,18 @@ public:
 private:
     using Clock = std::chrono::steady_clock;
 
+    // Some come and go, with each page of a bake: they go on where they were.
+    struct Stage {
+        double seconds = 0.0, shown = 0.0;  // that it ran, and had run when it was last shown
+        bool finished = false;
+    };
+
     void bar(const Progress& progress, double elapsed, double left, double rate) {
         constexpr int kCells = 30;
         const int filled = static_cast<int>(std::lround(progress.fraction * kCells));
         std::string cells(static_cast<std::size_t>(filled), '#');
         cells.resize(kCells, '.');
-        std::fprintf(stderr, "\r\033[K%-12s [%s] %3.0f %%%s, %s", stage_.c_str(), cells.c_str(),
+        std::fprintf(stderr, "\r\033[K%-12s [%s] %3.0f %%%s, %s", name_.c_str(), cells.c_str(),
                      100.0 * progress.fraction, rate_text(progress.rays, rate).c_str(),
                      progress.fraction >= 1.0 ? duration(elapsed).c_str() : left_text(progress.fraction, left).c_str());
         std::fflush(stderr);
@@ -104,8 +114,9 @@ private:
     }
 
     ProgressStyle style_;
-    std::string stage_, finished_;
-    Clock::time_point start_{}, shown_{};
+    std::map<std::string, Stage> stages_;
+    std::string name_;  // of the stage that runs
+    Clock::time_point last_{};
     bool open_line_ = false;
 };
 

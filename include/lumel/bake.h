@@ -18,6 +18,7 @@ struct Lightmap;  // post/lightmap.h
 struct ChartSet;  // chart/chart_set.h
 struct Atlas;
 struct WorldGeometry;
+struct Transport;  // path/path_integrator.h
 
 struct StageTime {
     std::string stage;
@@ -60,6 +61,9 @@ struct BakeSink {
     // After charts and atlas, before any page.
     std::function<Status(const WorldGeometry&, const ChartSet&, const Atlas&)> layout;
     std::function<Status(const Lightmap&)> page;
+    // After the last page, while what its light was traced in still stands: for pictures of the result. The report is
+    // that which bake() returns; stages may be added.
+    std::function<Status(const Transport&, BakeReport&)> finished = {};
 };
 
 // Applies the options' sky and sun to the scene, once, before bake() or a render. A sky map named by the options has

@@ -5,11 +5,13 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "bake/memory.h"
 #include "bake/stage_timer.h"
 #include "base/denormals.h"
 #include "base/memory_use.h"
+#include "base/progress_parts.h"
 #include "base/try.h"
 #include "chart/chart_picture.h"
 #include "chart/chart_set.h"
@@ -156,10 +158,70 @@ PageReport page_report(const Lightmap& map, const TexelBuffer& buffer) {
     return page;
 }
 
+// What the pages are baked from, one at a time.
+struct PageBaker {
+    const Scene& scene;
+    const ChartSet& charts;
+    const Atlas& atlas;
+    const Transport& transport;
+    const BakeOptions& options;
+    const PathOptions& path;
+    BakeReport& report;
+    Context& context;
+
+    // The texel buffer lives no longer than this.
+    [[nodiscard]] Result<Lightmap> bake(std::uint32_t page, const std::vector<std::uint32_t>& triangles) const {
+        TexelBuffer texels;
+        TexelSurface surface;
+        RadianceSums sums;
+        {
+            const StageTimer timer(report, "texels");
+            LUMEL_TRY(texels, rasterize_page(scene, transport.geometry, charts, atlas, page, triangles, context));
+            LUMEL_TRY(surface, read_texel_surface(texels, scene, transport.geometry, charts, atlas, context));
+        }
+        {
+            const StageTimer timer(report, "trace");
+            const std::size_t room = texels_with_rings(texels, options.dilate);
+            LUMEL_TRY(sums, gather_page(texels, charts, atlas, transport, path, 0, texels.size(), context, room));
+            report.trace_wall_seconds += timer.seconds();
+        }
+        for (const std::uint32_t traced : sums.traced) report.samples += traced;
+        if (options.denoise.value_or(preset_values(options.preset).denoise)) {
+            const StageTimer timer(report, "denoise");
+            LUMEL_TRY_STATUS(denoise(texels, {}, sums, context));
+        }
+        const StageTimer timer(report, "post");
+        const std::vector<std::uint32_t> readers = chart_ids(scene, charts, atlas, page);
+        LUMEL_TRY(Lightmap map,
+                  finish_page(texels, std::move(sums), std::move(surface), readers, options.dilate, context));
+        report.pages.push_back(page_report(map, texels));
+        return map;
+    }
+};
+
+// Progress of each stage is that over all pages.
+Status bake_pages(const PageBaker& baker, const BakeSink& sink, Totals& totals) {
+    const auto work = [](const AtlasPage& page) {
+        return static_cast<double>(std::uint64_t{page.width} * page.height);
+    };
+    double all = 0.0;
+    for (const AtlasPage& page : baker.atlas.pages) all += work(page);
+    ProgressParts progress(baker.context, all);
+    const auto by_page = triangles_by_page(baker.scene, baker.transport.geometry, baker.charts, baker.atlas);
+    for (std::uint32_t page = 0; page < baker.atlas.pages.size(); ++page) {
+        progress.begin(work(baker.atlas.pages[page]));
+        LUMEL_TRY(const Lightmap map, baker.bake(page, by_page[page]));
+        totals.add(map, baker.path.included);
+        const StageTimer timer(baker.report, "write");
+        if (sink.page) LUMEL_TRY_STATUS(sink.page(map));
+    }
+    return success();
+}
+
 }  // namespace
 
 Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const BakeSink& sink, Context& context) {
-    const FlushDenormals flush;  // in what this thread computes by itself, too
+    std::optional<FlushDenormals> flush(std::in_place);  // in what this thread computes by itself, too
     BakeReport report;
     report.threads = context.threads();
 
@@ -223,42 +285,8 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
         report.cells = cells->size();
         report.trace_wall_seconds += timer.seconds();
     }
-    const auto by_page = triangles_by_page(scene, geometry, charts, atlas);
-
     Totals totals;
-    for (std::uint32_t page = 0; page < atlas.pages.size(); ++page) {
-        TexelBuffer texels;
-        TexelSurface surface;
-        RadianceSums sums;
-        {
-            const StageTimer timer(report, "texels");
-            LUMEL_TRY(texels, rasterize_page(scene, geometry, charts, atlas, page, by_page[page], context));
-            LUMEL_TRY(surface, read_texel_surface(texels, scene, geometry, charts, atlas, context));
-        }
-        {
-            const StageTimer timer(report, "trace");
-            const std::size_t room = texels_with_rings(texels, options.dilate);
-            LUMEL_TRY(sums, gather_page(texels, charts, atlas, transport, path, 0, texels.size(), context, room));
-            report.trace_wall_seconds += timer.seconds();
-        }
-        for (const std::uint32_t traced : sums.traced) report.samples += traced;
-        Lightmap map;
-        if (options.denoise.value_or(preset_values(options.preset).denoise)) {
-            const StageTimer timer(report, "denoise");
-            LUMEL_TRY_STATUS(denoise(texels, {}, sums, context));
-        }
-        {
-            const StageTimer timer(report, "post");
-            const std::vector<std::uint32_t> readers = chart_ids(scene, charts, atlas, page);
-            LUMEL_TRY(map, finish_page(texels, std::move(sums), std::move(surface), readers, options.dilate, context));
-        }
-        report.pages.push_back(page_report(map, texels));
-        totals.add(map, path.included);
-        texels = {};
-        const StageTimer timer(report, "write");
-        if (sink.page) LUMEL_TRY_STATUS(sink.page(map));
-    }
-
+    LUMEL_TRY_STATUS(bake_pages({scene, charts, atlas, transport, options, path, report, context}, sink, totals));
     for (const PageReport& page : report.pages) {
         report.texels += page.texels;
         report.invalid_texels += page.invalid;
@@ -282,6 +310,12 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
     report.texels_per_metre = atlas.texels_per_metre;
     report.least_texels_per_metre = atlas.least_texels_per_metre;
     report.peak_memory_bytes = peak_memory();
+    if (sink.finished) {
+        transport.cells = nullptr;
+        cells.reset();
+        flush.reset();
+        LUMEL_TRY_STATUS(sink.finished(transport, report));
+    }
     return report;
 }
 

@@ -3,6 +3,8 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <map>
+#include <string>
 
 #include "base/hash.h"
 #include "chart/chart_set.h"
@@ -350,6 +352,77 @@ TEST(Bake, PagesShrinkToTheMemoryAllowed) {
     // Two walls of 3 m and a floor are wider than 512 texels, however often the pages were halved to get there.
     EXPECT_LE(clamped, 6u);
     EXPECT_GT(clamped, 0u);
+}
+
+// Of a bake of several pages, with cells: every stage goes from its beginning to its end once, pages or not.
+TEST(Bake, ProgressOfEachStageOnlyGrows) {
+    BakeOptions options = small_options();
+    options.texels_per_metre = 40;
+    options.max_page = 128;
+    options.samples = 2;
+    options.integrator = Integrator::cells;
+    Context context(2);
+    std::map<std::string, double, std::less<>> seen;
+    context.on_progress = [&](const Progress& p) {
+        const std::string stage(p.stage);
+        EXPECT_GE(p.fraction, seen[stage]) << stage;
+        EXPECT_LE(p.fraction, 1.0) << stage;
+        seen[stage] = p.fraction;
+    };
+    BakeSink sink;
+    std::size_t pages = 0;
+    sink.page = [&](const Lightmap&) {
+        ++pages;
+        context.report("write", 0.5);
+        context.report("write", 1.0);
+        return success();
+    };
+    ASSERT_TRUE(bake(test::room(), options, sink, context).ok());
+    EXPECT_GT(pages, 2u);
+    for (const char* stage : {"cells", "texels", "trace", "write"}) EXPECT_EQ(seen[stage], 1.0) << stage;
+}
+
+// The cells' layout, their view of each other, their gathering and solving are one stage: a bake that is cancelled at
+// any point of it ends there.
+TEST(Bake, CellsCanBeCancelledAnywhere) {
+    BakeOptions options = small_options();
+    options.integrator = Integrator::cells;
+    for (const double at : {0.01, 0.1, 0.3, 0.95}) {
+        Context context(2);
+        double last = 0.0;
+        context.on_progress = [&](const Progress& p) {
+            EXPECT_FALSE(p.stage == "texels" || p.stage == "trace") << p.stage;
+            if (p.stage != "cells") return;
+            last = p.fraction;
+            if (p.fraction >= at) context.request_cancel();
+        };
+        const auto result = bake(test::room(), options, no_sink(), context);
+        ASSERT_FALSE(result.ok()) << at;
+        EXPECT_EQ(result.error().code, ErrorCode::cancelled);
+        EXPECT_GE(last, at);
+    }
+}
+
+// What the light was traced in is there for pictures when the pages are done, without the cells.
+TEST(Bake, TheEndSeesWhatWasTraced) {
+    BakeSink sink = no_sink();
+    std::uint64_t rays = 0;
+    sink.finished = [&](const Transport& transport, BakeReport& report) {
+        EXPECT_EQ(transport.cells, nullptr);
+        EXPECT_GT(report.cells, 0u);
+        rays = transport.tracer.statistics().rays;
+        report.stages.push_back({"views", 1.0, 1.0});
+        return success();
+    };
+    BakeOptions options = small_options();
+    Context context(2);
+    const auto report = bake(test::room(), options, sink, context);
+    ASSERT_TRUE(report.ok()) << report.error().text();
+    EXPECT_GT(rays, 0u);
+    EXPECT_EQ(report->rays, rays);
+    EXPECT_EQ(report->stages.back().stage, "views");
+    sink.finished = [](const Transport&, BakeReport&) -> Status { return Error{ErrorCode::io, "no room", {}, {}}; };
+    EXPECT_FALSE(bake(test::room(), options, sink, context).ok());
 }
 
 TEST(Bake, CancelledBakesStopAndSaySo) {

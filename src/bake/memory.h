@@ -12,8 +12,8 @@ namespace lumel {
 std::uint64_t tracer_memory(const WorldGeometry& geometry);
 std::uint64_t light_memory(const WorldGeometry& geometry);
 
-// Geometry, lights, acceleration structure, textures, charts: what lives as long as pages are baked, and again while
-// views of the result are rendered.
+// Geometry, lights, acceleration structure, textures, charts: what lives as long as pages are baked and views of
+// the result are rendered.
 std::uint64_t scene_memory(const Scene& scene, const WorldGeometry& geometry, const Atlas& atlas);
 
 // One page while it is baked and written: texel buffer, sums, lightmap, rows of the files on so many threads.

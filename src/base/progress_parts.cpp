@@ -14,13 +14,17 @@ ProgressParts::~ProgressParts() { context_.on_progress = std::move(outer_); }
 
 void ProgressParts::begin(double work) {
     done_ += std::exchange(part_, work);
-    rays_before_ += std::exchange(rays_, 0);
+    for (auto& [stage, rays] : rays_) rays.before += std::exchange(rays.now, 0);
 }
 
 void ProgressParts::report(const Progress& of_part) {
-    rays_ = std::max(rays_, of_part.rays);
+    const std::string_view stage = stage_.empty() ? of_part.stage : std::string_view(stage_);
+    auto at = rays_.find(stage);
+    if (at == rays_.end()) at = rays_.emplace(stage, Rays{}).first;
+    Rays& rays = at->second;
+    rays.now = std::max(rays.now, of_part.rays);
     const double fraction = std::min((done_ + part_ * of_part.fraction) / work_, 1.0);
-    if (outer_) outer_({stage_, fraction, rays_before_ + rays_});
+    if (outer_) outer_({stage, fraction, rays.before + rays.now});
 }
 
 }  // namespace lumel

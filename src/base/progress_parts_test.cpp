@@ -37,6 +37,25 @@ TEST(ProgressParts, FractionsAndRaysOnlyGrow) {
     EXPECT_EQ(seen, expected);
 }
 
+// Two pages, the second three times as large, each through two stages.
+TEST(ProgressParts, StagesOfAPartKeepTheirNames) {
+    Context context(1);
+    std::vector<Seen> seen;
+    context.on_progress = [&](const Progress& p) { seen.push_back({std::string(p.stage), p.fraction, p.rays}); };
+    {
+        ProgressParts pages(context, 4);
+        for (const double work : {1.0, 3.0}) {
+            pages.begin(work);
+            context.report("trace", 0.5, 10);
+            context.report("trace", 1.0, 20);
+            context.report("write", 1.0);
+        }
+    }
+    const std::vector<Seen> expected{{"trace", 0.125, 10}, {"trace", 0.25, 20}, {"write", 0.25, 0},
+                                     {"trace", 0.625, 30}, {"trace", 1.0, 40},  {"write", 1.0, 0}};
+    EXPECT_EQ(seen, expected);
+}
+
 TEST(ProgressParts, NobodyNeedListen) {
     Context context(1);
     ProgressParts parts(context, "views", 2);

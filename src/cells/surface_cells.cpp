@@ -7,6 +7,7 @@
 #include "base/cancelled.h"
 #include "base/check.h"
 #include "base/parallel.h"
+#include "base/progress_parts.h"
 #include "base/try.h"
 #include "texel/ray_offset.h"
 
@@ -15,6 +16,10 @@ namespace {
 
 constexpr float kLift = 1.0f / 16;  // of the points that look at each other, in edges of the cell
 constexpr float kSettled = 1e-4f;   // change of a cell by one more bounce, of its light
+
+constexpr const char* kStage = "cells";  // of the progress
+// Shares of the time that it takes to lay out cells and to see who sees whom.
+constexpr double kLayoutWork = 1.0, kMiddlesWork = 1.0, kSightWork = 3.0;
 
 // The eight texels around one, in this order.
 constexpr std::array<std::array<std::int32_t, 2>, 8> kNeighbours{
@@ -53,16 +58,29 @@ Result<SurfaceCells> SurfaceCells::make(const Scene& scene, const WorldGeometry&
     // What the cells' layout has to say of charts is no news to the user.
     const Diagnostics before = context.diagnostics;
     LUMEL_TRY(cells.atlas_, make_atlas(scene, geometry, charts, layout, context));
-    const auto by_page = triangles_by_page(scene, geometry, charts, cells.atlas_);
-    for (std::uint32_t page = 0; page < cells.atlas_.pages.size(); ++page) {
-        LUMEL_TRY(TexelBuffer texels,
-                  rasterize_page(scene, geometry, charts, cells.atlas_, page, by_page[page], context));
-        cells.pages_.push_back(std::move(texels));
-    }
+    ProgressParts progress(context, kStage, kLayoutWork + kMiddlesWork + kSightWork);
+    progress.begin(kLayoutWork);
+    LUMEL_TRY_STATUS(cells.rasterize(scene, geometry, charts, context));
     context.diagnostics = before;
     cells.lay_out(scene, geometry, charts);
-    if (!cells.find_visibility(scene, geometry, charts, tracer, context)) return cancelled_error();
+    progress.begin(kMiddlesWork);
+    std::vector<Vec3> middles;
+    if (!cells.find_middles(scene, geometry, charts, middles, context)) return cancelled_error();
+    progress.begin(kSightWork);
+    if (!cells.find_visibility(scene, geometry, charts, tracer, middles, context)) return cancelled_error();
     return cells;
+}
+
+Status SurfaceCells::rasterize(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts,
+                               Context& context) {
+    const auto by_page = triangles_by_page(scene, geometry, charts, atlas_);
+    ProgressParts progress(context, kStage, static_cast<double>(atlas_.pages.size()));
+    for (std::uint32_t page = 0; page < atlas_.pages.size(); ++page) {
+        progress.begin(1.0);
+        LUMEL_TRY(TexelBuffer texels, rasterize_page(scene, geometry, charts, atlas_, page, by_page[page], context));
+        pages_.push_back(std::move(texels));
+    }
+    return success();
 }
 
 void SurfaceCells::lay_out(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts) {
@@ -164,58 +182,65 @@ const SamplePoint& middle_of(std::span<const SamplePoint> points, const WorldGeo
 
 }  // namespace
 
-// A cell whose sample points are not all seen from its middle is not usable; neighbours lend each other light where
-// their middles see each other. Points are lifted a little, so that roughness of the surface itself does not count, and
-// must see the surface below: nothing lies on a cell.
-bool SurfaceCells::find_visibility(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts,
-                                   const Tracer& tracer, Context& context) {
-    using Points = std::array<SamplePoint, kSamplesPerTexel>;
-    const auto lift_of = [&](std::uint32_t cell) { return (is_back(cell) ? -kLift : kLift) * site(cell).edge; };
-    std::vector<Vec3> middles(size());
-    const bool placed = parallel_for(context, size(), 64, [&](const ChunkRange& range) {
-        Points points;
+float SurfaceCells::lift_of(std::uint32_t cell) const { return (is_back(cell) ? -kLift : kLift) * site(cell).edge; }
+
+bool SurfaceCells::find_middles(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts,
+                                std::vector<Vec3>& middles, Context& context) const {
+    middles.resize(size());
+    const auto find = [&](const ChunkRange& range) {
+        std::array<SamplePoint, kSamplesPerTexel> points;
         for (std::size_t i = range.begin; i < range.end; ++i) {
             const auto cell = static_cast<std::uint32_t>(i);
             const std::uint32_t n = sample_points(cell, scene, geometry, charts, points);
             middles[i] = lifted(geometry, middle_of(std::span(points).first(n), geometry), lift_of(cell));
         }
-    });
-    return placed && parallel_for(context, size(), 64, [&](const ChunkRange& range) {
-               Points points;
-               std::array<Ray, 2 * kSamplesPerTexel + kNeighbours.size()> rays;
-               std::array<std::uint8_t, rays.size()> blocked;
-               std::array<std::uint32_t, kNeighbours.size()> bits{};
-               for (std::size_t i = range.begin; i < range.end; ++i) {
-                   const auto cell = static_cast<std::uint32_t>(i);
-                   const Site& s = site(cell);
-                   const TexelBuffer& texels = pages_[s.page];
-                   std::size_t count = 0;
-                   const auto look_at = [&](Vec3 to) {
-                       const float distance = length(to - middles[i]);
-                       if (!(distance > 0.0f)) return false;
-                       rays[count++] = segment(middles[i], to - middles[i], distance);
-                       return true;
-                   };
-                   const std::uint32_t n = sample_points(cell, scene, geometry, charts, points);
-                   for (std::uint32_t k = 0; k < n; ++k) {
-                       const Vec3 to = lifted(geometry, points[k], lift_of(cell));
-                       look_at(to);
-                       rays[count++] = rise(geometry, points[k], is_back(cell), to);
-                   }
-                   const std::size_t own = count;
-                   for (const auto& [dx, dy] : kNeighbours) {
-                       const std::uint32_t front =
-                           front_at(s.page, texels.x[s.texel] + dx, texels.y[s.texel] + dy, texels.chart[s.texel]);
-                       const std::uint32_t other = is_back(cell) && front != kNone ? sites_[front].back : front;
-                       if (other != kNone && look_at(middles[other])) bits[count - own - 1] = neighbour_bit(dx, dy);
-                   }
-                   tracer.occluded(std::span(rays).first(count), std::span(blocked).first(count));
-                   const auto outside = blocked.begin() + static_cast<std::ptrdiff_t>(own);
-                   usable_[cell] = std::find(blocked.begin(), outside, 1) == outside ? 1 : 0;
-                   for (std::size_t k = own; k < count; ++k)
-                       if (!blocked[k]) open_[cell] |= static_cast<std::uint8_t>(1u << bits[k - own]);
-               }
-           });
+    };
+    return parallel_for(context, size(), 64, find, kStage);
+}
+
+// A cell whose sample points are not all seen from its middle is not usable; neighbours lend each other light where
+// their middles see each other. Points are lifted a little, so that roughness of the surface itself does not count, and
+// must see the surface below: nothing lies on a cell.
+bool SurfaceCells::find_visibility(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts,
+                                   const Tracer& tracer, std::span<const Vec3> middles, Context& context) {
+    const auto look = [&](const ChunkRange& range) {
+        std::array<SamplePoint, kSamplesPerTexel> points;
+        std::array<Ray, 2 * kSamplesPerTexel + kNeighbours.size()> rays;
+        std::array<std::uint8_t, rays.size()> blocked;
+        std::array<std::uint32_t, kNeighbours.size()> bits{};
+        for (std::size_t i = range.begin; i < range.end; ++i) {
+            const auto cell = static_cast<std::uint32_t>(i);
+            const Site& s = site(cell);
+            const TexelBuffer& texels = pages_[s.page];
+            std::size_t count = 0;
+            const auto look_at = [&](Vec3 to) {
+                const float distance = length(to - middles[i]);
+                if (!(distance > 0.0f)) return false;
+                rays[count++] = segment(middles[i], to - middles[i], distance);
+                return true;
+            };
+            const std::uint32_t n = sample_points(cell, scene, geometry, charts, points);
+            for (std::uint32_t k = 0; k < n; ++k) {
+                const Vec3 to = lifted(geometry, points[k], lift_of(cell));
+                look_at(to);
+                rays[count++] = rise(geometry, points[k], is_back(cell), to);
+            }
+            const std::size_t own = count;
+            for (const auto& [dx, dy] : kNeighbours) {
+                const std::uint32_t front =
+                    front_at(s.page, texels.x[s.texel] + dx, texels.y[s.texel] + dy, texels.chart[s.texel]);
+                const std::uint32_t other = is_back(cell) && front != kNone ? sites_[front].back : front;
+                if (other != kNone && look_at(middles[other])) bits[count - own - 1] = neighbour_bit(dx, dy);
+            }
+            tracer.occluded(std::span(rays).first(count), std::span(blocked).first(count));
+            const auto outside = blocked.begin() + static_cast<std::ptrdiff_t>(own);
+            usable_[cell] = std::find(blocked.begin(), outside, 1) == outside ? 1 : 0;
+            for (std::size_t k = own; k < count; ++k)
+                if (!blocked[k]) open_[cell] |= static_cast<std::uint8_t>(1u << bits[k - own]);
+        }
+    };
+    const std::uint64_t rays_before = tracer.statistics().rays;
+    return parallel_for(context, size(), 64, look, kStage, [&] { return tracer.statistics().rays - rays_before; });
 }
 
 void SurfaceCells::drop_sites() {
@@ -262,7 +287,9 @@ Status SurfaceCells::solve(std::span<const CellGather> gathers, std::span<const 
         if (!done) return cancelled_error();
         std::swap(irradiance_, next);
         if (std::find(settled.begin(), settled.end(), 0) == settled.end()) break;
+        context.report(kStage, static_cast<double>(bounce) / bounces);
     }
+    context.report(kStage, 1.0);
     return success();
 }
 

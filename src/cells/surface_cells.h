@@ -40,7 +40,7 @@ struct CellGather {
 class SurfaceCells {
 public:
     // Lays out the cells and tests who sees whom. `texels_per_cell`: edge of a cell in texels of `atlas`, that of
-    // the bake. Error: cancelled.
+    // the bake. Progress: stage "cells". Error: cancelled.
     static Result<SurfaceCells> make(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts,
                                      const Atlas& atlas, const Tracer& tracer, double texels_per_cell,
                                      Context& context);
@@ -70,7 +70,7 @@ public:
     // Sets the irradiance from what all cells gathered: `gathers` of each, `links` as many for each. Bounces are
     // iterations over the links, at no ray, until no cell changes by more than 1e-4. Cells most of whose paths met the
     // backs of surfaces become unusable.
-    // Error: cancelled.
+    // Progress: stage "cells". Error: cancelled.
     Status solve(std::span<const CellGather> gathers, std::span<const CellLink> links, std::uint32_t bounces,
                  Context& context);
 
@@ -96,8 +96,14 @@ private:
     [[nodiscard]] std::uint32_t front_at(std::uint32_t page, std::int32_t x, std::int32_t y,
                                          std::uint32_t placement) const;
     void lay_out(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts);
+    Status rasterize(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts, Context& context);
+    // Metres from the surface to where a cell is looked at from.
+    [[nodiscard]] float lift_of(std::uint32_t cell) const;
+    // The points that look at each other, one per cell. False, as below: cancelled.
+    bool find_middles(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts,
+                      std::vector<Vec3>& middles, Context& context) const;
     bool find_visibility(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts,
-                         const Tracer& tracer, Context& context);
+                         const Tracer& tracer, std::span<const Vec3> middles, Context& context);
 
     Atlas atlas_;
     std::vector<TexelBuffer> pages_;

@@ -7,9 +7,17 @@
 #include "base/cancelled.h"
 #include "base/check.h"
 #include "base/parallel.h"
+#include "base/progress_parts.h"
 #include "base/try.h"
 
 namespace lumel {
+namespace {
+
+// Time that it takes to make cells and to solve them, in that of a path that a cell gathers.
+constexpr double kMakeWork = 3.0, kSolveWork = 1.0;
+
+}  // namespace
+
 double texels_per_cell(const Atlas& atlas, std::uint32_t samples) {
     constexpr double kTexelsPerCell = 4.0, kSamplesOfThat = 256.0;
     double texels = 0.0;
@@ -22,6 +30,9 @@ double texels_per_cell(const Atlas& atlas, std::uint32_t samples) {
 Result<SurfaceCells> make_lit_cells(const ChartSet& charts, const Atlas& atlas, const Transport& transport,
                                     const PathOptions& path, Context& context) {
     LUMEL_CHECK(path.bounces > 0 && !transport.cells, path.bounces);
+    const double gather_work = path.samples;
+    ProgressParts progress(context, "cells", kMakeWork + gather_work + kSolveWork);
+    progress.begin(kMakeWork);
     LUMEL_TRY(SurfaceCells cells, SurfaceCells::make(transport.scene, transport.geometry, charts, atlas,
                                                      transport.tracer, texels_per_cell(atlas, path.samples), context));
     if (cells.size() == 0) return cells;
@@ -38,6 +49,7 @@ Result<SurfaceCells> make_lit_cells(const ChartSet& charts, const Atlas& atlas, 
     std::vector<CellLink> links(cells.size() * links_each);
     std::vector<CellGather> gathers(cells.size());
     const std::uint64_t rays_before = transport.tracer.statistics().rays;
+    progress.begin(gather_work);
     const bool done = parallel_for(
         context, cells.size(), 16,
         [&](const ChunkRange& range) {
@@ -53,6 +65,7 @@ Result<SurfaceCells> make_lit_cells(const ChartSet& charts, const Atlas& atlas, 
         },
         "cells", [&] { return transport.tracer.statistics().rays - rays_before; });
     if (!done) return cancelled_error();
+    progress.begin(kSolveWork);
     LUMEL_TRY_STATUS(cells.solve(gathers, links, path.bounces, context));
     cells.drop_sites();
     return cells;
