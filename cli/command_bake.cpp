@@ -87,15 +87,10 @@ std::vector<std::uint8_t> side_by_side(const Image& truth, const Image& baked) {
 
 // preview_view_<k>.png from the files just written: what the pictures show is what a user gets. `page_memory`: for the
 // pages that are looked at together.
-Status write_views(BakeWriter& writer, const Scene& scene, const BakeOptions& options, const PictureOptions& picture,
-                   std::uint32_t count, std::uint64_t page_memory, Context& context) {
+Status write_views(BakeWriter& writer, const Transport& transport, const BakeOptions& options,
+                   const PictureOptions& picture, std::uint32_t count, std::uint64_t page_memory, Context& context) {
     if (count == 0) return success();
-    LUMEL_TRY(const WorldGeometry geometry, flatten(scene, context));
-    const SurfaceReader surfaces(scene, geometry);
-    const LightSet lights(scene, geometry, surfaces);
-    LUMEL_TRY(const std::unique_ptr<Tracer> tracer, make_embree_tracer(geometry, surfaces, context));
-    const Transport transport{scene, geometry, surfaces, lights, *tracer};
-    LUMEL_TRY(BakedLighting baked, read_baked(writer.folder(), scene, geometry, page_memory));
+    LUMEL_TRY(BakedLighting baked, read_baked(writer.folder(), transport.scene, transport.geometry, page_memory));
     const BakedLight light = light_of(baked);
     const PathOptions path = transport_options(options);
     LUMEL_TRY(const std::vector<Camera> views, choose_views(transport, count, context));
@@ -169,17 +164,17 @@ Status run(const Options& options) {
         return writer.layout(geometry, charts, atlas);
     };
     sink.page = [&](const Lightmap& page) { return writer.page(page); };
-    LUMEL_TRY(BakeReport report, bake(loaded.scene, bake_options, sink, context));
-    {
-        const StageTimer timer(report, "scene");
-        LUMEL_TRY_STATUS(writer.write_scene());
-    }
-    {
+    sink.finished = [&](const Transport& transport, BakeReport& report) -> Status {
+        {
+            const StageTimer timer(report, "scene");
+            LUMEL_TRY_STATUS(writer.write_scene());
+        }
         const StageTimer timer(report, "views");
         const PictureOptions picture{kViewWidth, kViewHeight, options.view_samples};
-        LUMEL_TRY_STATUS(write_views(writer, loaded.scene, bake_options, picture, options.views,
-                                     memory_for_views(bake_options, report), context));
-    }
+        return write_views(writer, transport, bake_options, picture, options.views,
+                           memory_for_views(bake_options, report), context);
+    };
+    LUMEL_TRY(BakeReport report, bake(loaded.scene, bake_options, sink, context));
     LUMEL_TRY_STATUS(writer.finish(report, context.diagnostics));
     if (!run_context.interrupt().begin_commit()) return cancelled_error();
     LUMEL_TRY_STATUS(writer.commit());
