@@ -195,7 +195,7 @@ private:
     std::span<const ExrChannelSource> channels_;
     std::vector<std::vector<char>> planes_;  // one per channel
     std::vector<float> row_;                 // of all channels
-    exr_encode_pipeline_t pipeline_ = EXR_ENCODE_PIPELINE_INITIALIZER;
+    exr_encode_pipeline_t pipeline_{};
 };
 
 // The chunks of a file, some at a time.
