@@ -13,6 +13,7 @@
 
 #include "io/atomic_file.h"
 #include "io/image_io.h"
+#include "support/statistics.h"
 #include "support/temporary_folder.h"
 
 namespace lumel {
@@ -172,17 +173,29 @@ TEST(WritePng, RoundTripsEightBits) {
             EXPECT_EQ(std::lround(read->data[i * read->channels + c] * 255), pixels[3 * i + c]);
 }
 
-// Rows that each filter of PNG suits best: nothing, noise, steps along the row, the row above again, a slope both ways.
+// Rows that each filter of PNG suits best, between empty ones: specks (none), steps along the row (left), a row again
+// and again (above), a noisy level (mean of both), edges of which some stay and one jumps to and fro (Paeth).
 TEST(WritePng, RoundTripsWhateverTheRowsAre) {
     const TemporaryFolder folder;
-    constexpr std::uint32_t kWidth = 40, kHeight = 60;
+    constexpr std::uint32_t kWidth = 40, kHeight = 70;
+    const auto value = [](std::uint32_t x, std::uint32_t y, std::uint32_t noise) -> std::uint32_t {
+        switch (y / 10) {
+            case 1: return noise < 30 ? 1 : 0;
+            case 2: return 6 * x + 37 * y;
+            case 3: return x * x / 10 % 7 * 30;
+            case 4: return 100 + noise / 16;
+            case 5: return x < 20 ? x / 2 % 2 * 90 : (x < (y % 2 ? 24 : 36) ? 30 : 120);
+            default: return 0;
+        }
+    };
     for (const std::uint32_t channels : {1u, 3u, 4u}) {
+        test::Random random(channels);
         std::vector<std::uint8_t> pixels(std::size_t{kWidth} * kHeight * channels);
         for (std::uint32_t y = 0; y < kHeight; ++y)
             for (std::uint32_t i = 0; i < kWidth * channels; ++i) {
-                const std::uint32_t x = i / channels, noise = (y * 2654435761u + i * 40503u) * 2246822519u >> 24;
-                const std::uint32_t kinds[] = {0u, noise, 6 * x, 200 - x * x / 10, 3 * x + 2 * y, 0u};
-                pixels[std::size_t{y} * kWidth * channels + i] = static_cast<std::uint8_t>(kinds[y / 10]);
+                const std::uint32_t noise = random.bits() >> 24;
+                pixels[std::size_t{y} * kWidth * channels + i] =
+                    static_cast<std::uint8_t>(value(i / channels, y, noise));
             }
         ASSERT_TRUE(write_png(folder / "a.png", kWidth, kHeight, channels, pixels).ok());
         const auto read = read_image(folder / "a.png");
