@@ -1,6 +1,6 @@
-// A fence before stb_image's PNG decoder, which allocates what an IDAT chunk states as its length (up to 1 GB) before it
-// looks for so many bytes (stb_image 2.27, stbi__parse_png_file). Remove it with the last supported system that has that
-// version.
+// A fence before stb_image's PNG decoder, which allocates what an IDAT chunk states as its length (up to 1 GB) before
+// it looks for so many bytes (stb_image 2.27, stbi__parse_png_file). Remove it with the last supported system that has
+// that version.
 #pragma once
 
 #include <cstddef>
