@@ -8,6 +8,7 @@
 #include "flux_integrator.h"
 #include "load.h"
 #include "path/light_cells.h"
+#include "path/pooled_variance.h"
 
 namespace lumel::bench {
 namespace {
@@ -18,12 +19,19 @@ Transport transport_through(const BenchScene& bench, const LightSet& lights) {
     return {bench.scene, bench.geometry, bench.surfaces, lights, *bench.tracer};
 }
 
+RadianceSums gather(const GatherJob& job, const Transport& transport) {
+    const BenchScene& b = job.bench;
+    RadianceSums sums = need(
+        gather_page(b.texels, b.charts, b.atlas, transport, job.path, job.range.first, job.range.count, job.context));
+    need(pool_variance(b.texels, sums, job.context));
+    return sums;
+}
+
 template <Choice choice>
 RadianceSums brute_force(const GatherJob& job) {
     const BenchScene& b = job.bench;
     const LightSet lights(b.scene, b.geometry, b.surfaces, choice);
-    return need(gather_page(b.texels, b.charts, b.atlas, transport_through(b, lights), job.path, job.range.first,
-                            job.range.count, job.context));
+    return gather(job, transport_through(b, lights));
 }
 
 RadianceSums with_cells(const GatherJob& job) {
@@ -32,8 +40,7 @@ RadianceSums with_cells(const GatherJob& job) {
     Transport transport = transport_through(b, lights);
     const SurfaceCells cells = need(make_lit_cells(b.charts, b.atlas, transport, job.path, job.context));
     transport.cells = &cells;
-    return need(
-        gather_page(b.texels, b.charts, b.atlas, transport, job.path, job.range.first, job.range.count, job.context));
+    return gather(job, transport);
 }
 
 RadianceSums flux_with(const GatherJob& job, const FluxChoices& choices, Choice choice) {

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kRelativeFloor = 0.01;
 constexpr std::uint32_t kBlock = 16;
+constexpr double kInterval = 1.96;  // deviations either side that contain 95 of 100
 
 // Of a texel and a colour channel: the values that are scored together.
 using Values = std::array<double, kScoredSh>;
@@ -79,6 +80,38 @@ double sum_of_channels(Vec3 v) {
     return static_cast<double>(v.x) + static_cast<double>(v.y) + static_cast<double>(v.z);
 }
 
+struct Coverage {
+    double brightness = 0.0, share = 0.0;  // of the texel's three channels
+};
+
+Coverage coverage_of(const Compared& t, Vec3 variance) {
+    Coverage out;
+    for (std::size_t c = 0; c < 3; ++c) {
+        const double a = static_cast<double>(t.a.irradiance[c]), b = static_cast<double>(t.b.irradiance[c]);
+        const double d = static_cast<double>(t.x.irradiance[c]) - 0.5 * (a + b);
+        const double total_variance = static_cast<double>(variance[c]) + 0.25 * (a - b) * (a - b);
+        out.brightness += a + b;
+        out.share += d * d <= kInterval * kInterval * total_variance ? 1.0 / 3.0 : 0.0;
+    }
+    return out;
+}
+
+void score_coverage(std::vector<Coverage> texels, Score& out) {
+    std::ranges::sort(texels, {}, [](const Coverage& t) { return std::pair(t.brightness, t.share); });
+    out.lowest_coverage = 1.0;
+    constexpr std::size_t kParts = 10;
+    for (std::size_t part = 0; part < kParts; ++part) {
+        const std::size_t first = part * texels.size() / kParts, last = (part + 1) * texels.size() / kParts;
+        if (first == last) continue;
+        double sum = 0.0;
+        for (std::size_t i = first; i < last; ++i) sum += texels[i].share;
+        out.coverage += sum / static_cast<double>(texels.size());
+        const double mean = sum / static_cast<double>(last - first);
+        out.lowest_coverage = std::min(out.lowest_coverage, mean);
+        out.highest_coverage = std::max(out.highest_coverage, mean);
+    }
+}
+
 struct Block {
     double x = 0.0, r = 0.0, variance = 0.0;
     std::size_t texels = 0;
@@ -102,12 +135,14 @@ double joint_p95(std::span<const double> deviations) {
 Score score(const RadianceSums& sums, const ReferenceHalf& a, const ReferenceHalf& b, const TexelBuffer& texels,
             TexelRange range) {
     std::vector<Compared> compared;
+    std::vector<Coverage> covered;
     std::map<std::pair<std::uint32_t, std::uint32_t>, Block> blocks;
     Block all;
     for (std::size_t i = 0; i < range.count; ++i) {
         const std::size_t texel = range.first + i;
         if (!sums.valid(texel) || !a.valid[i] || !b.valid[i]) continue;
         compared.push_back({light_of(sums, texel), a.light[i], b.light[i]});
+        covered.push_back(coverage_of(compared.back(), sums.variance[texel]));
         const double x = sum_of_channels(compared.back().x.irradiance);
         const double r = 0.5 * (sum_of_channels(a.light[i].irradiance) + sum_of_channels(b.light[i].irradiance));
         // Channels of one path rise and fall together: their deviations add.
@@ -133,6 +168,8 @@ Score score(const RadianceSums& sums, const ReferenceHalf& a, const ReferenceHal
             const Values half = combine(0.5, in_a, -0.5, in_b);
             return dot(half, half);
         }));
+
+    score_coverage(std::move(covered), out);
 
     const double mean = all.r / static_cast<double>(all.texels);
     if (!(mean > 0.0)) return out;

@@ -4,6 +4,10 @@
 //   relMSE of (L0, L1)  the same of the vector of four coefficients: products and squares are dot products, and the
 //                       mean is that of the vector's length; a single coefficient has no scale of its own where it
 //                       passes through zero
+//   coverage            share of texels and channels whose 95 % interval, 1.96 deviations by the texel's stated
+//   variance
+//                       (and the reference's, by its halves), contains r; lowest and highest of the deciles by
+//                       brightness
 //   block bias          of the mean light of 16 x 16 texels, relative: (x - r) / (r + 0.01 mean(r)), all channels
 //                       together; 95th percentile over blocks of its size. Noise that has not averaged out over a block
 //                       is in it: `block_noise` is what noise alone would give, by the texels' own variance (an upper
@@ -22,6 +26,7 @@ struct Score {
     double relmse_without_worst = 0.0;  // without the worst 0.1 % of texels
     double relmse_sh = 0.0;
     double bias = 0.0;  // of the mean of all texels, signed, relative
+    double coverage = 0.0, lowest_coverage = 0.0, highest_coverage = 0.0;
     double block_bias = 0.0, block_noise = 0.0;
     double reference_relmse = 0.0;  // of r itself: mean of ((A - B)/2)^2 / (...)
 };

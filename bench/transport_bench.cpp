@@ -104,6 +104,9 @@ void add(Score& sum, const Score& s, double share) {
     sum.relmse_without_worst += share * s.relmse_without_worst;
     sum.relmse_sh += share * s.relmse_sh;
     sum.bias += share * s.bias;
+    sum.coverage += share * s.coverage;
+    sum.lowest_coverage += share * s.lowest_coverage;
+    sum.highest_coverage += share * s.highest_coverage;
     sum.block_bias += share * s.block_bias;
     sum.block_noise += share * s.block_noise;
     sum.reference_relmse += share * s.reference_relmse;
@@ -133,16 +136,19 @@ Row measure(const Method& method, GatherJob job, std::uint32_t runs, const Refer
 
 constexpr const char* kHeader =
     "scene,width,height,texels,method,samples,mean_samples,rays,cpu_seconds,relmse_i,relmse_i_without_worst,relmse_sh,"
-    "bias,block_bias_p95,block_noise_p95,efficiency_over_flux,reference_samples,reference_relmse";
+    "bias,block_bias_p95,block_noise_p95,coverage,lowest_coverage,highest_coverage,efficiency_over_flux,reference_"
+    "samples,reference_relmse";
 
 std::string csv_row(const Row& row, const BenchScene& bench, const std::string& over_flux, std::uint64_t reference) {
     char text[512];
     const Score& s = row.score;
-    std::snprintf(text, sizeof text, "%s,%u,%u,%zu,%s,%u,%.1f,%llu,%.3f,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,%s,%llu,%.3g",
+    std::snprintf(text, sizeof text,
+                  "%s,%u,%u,%zu,%s,%u,%.1f,%llu,%.3f,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,%.3f,%.3f,%.3f,%s,%llu,%.3g",
                   row.scene.c_str(), bench.texels.width, bench.texels.height, s.texels, std::string(row.method).c_str(),
                   row.samples, row.mean_samples, static_cast<unsigned long long>(row.rays), row.cpu_seconds, s.relmse,
-                  s.relmse_without_worst, s.relmse_sh, s.bias, s.block_bias, s.block_noise, over_flux.c_str(),
-                  static_cast<unsigned long long>(reference), s.reference_relmse);
+                  s.relmse_without_worst, s.relmse_sh, s.bias, s.block_bias, s.block_noise, s.coverage,
+                  s.lowest_coverage, s.highest_coverage, over_flux.c_str(), static_cast<unsigned long long>(reference),
+                  s.reference_relmse);
     return text;
 }
 

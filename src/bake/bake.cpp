@@ -19,6 +19,7 @@
 #include "math/normal_quantile.h"
 #include "path/light_cells.h"
 #include "path/path_integrator.h"
+#include "path/pooled_variance.h"
 #include "post/denoise.h"
 #include "post/lightmap.h"
 #include "scene/world_geometry.h"
@@ -186,6 +187,7 @@ struct PageBaker {
             report.trace_wall_seconds += timer.seconds();
         }
         for (const std::uint32_t traced : sums.traced) report.samples += traced;
+        LUMEL_TRY_STATUS(pool_variance(texels, sums, context));
         if (options.denoise.value_or(preset_values(options.preset).denoise)) {
             const StageTimer timer(report, "denoise");
             LUMEL_TRY_STATUS(denoise(texels, {}, sums, context));

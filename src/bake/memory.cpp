@@ -22,12 +22,12 @@ constexpr std::uint64_t kProgramBytes = 64u << 20;  // code, libraries, allocato
 // One texel of a page that is covered all over, which is the most there is: dilated texels take no more than covered
 // ones, and the sums have room for them from the start, so that no array is held twice while it grows.
 constexpr std::uint64_t kSumsBytes =
-    kLayerCount * sizeof(LayerMoments) + 2 * sizeof(Vec3) + 2 * sizeof(float) + 2 * sizeof(std::uint32_t);
+    kLayerCount * sizeof(LayerMoments) + 3 * sizeof(Vec3) + 2 * sizeof(float) + 2 * sizeof(std::uint32_t);
 // x, y, valid points, owner, position, normal, size; start and share of the triangle lists.
 constexpr std::uint64_t kTexelBufferBytes = 4 + 8 + 4 + 2 * sizeof(Vec3) + 4 + 4 + 12;
-// Albedo, emission, coverage, chart; queue of the fill or guides and ratios of the denoiser, of which one lives at a
-// time.
-constexpr std::uint64_t kLightmapBytes = 2 * sizeof(Vec3) + 1 + 4 + 2 * sizeof(Vec3) + sizeof(float);
+// Albedo, emission, coverage, chart; queue of the fill or guides of the denoiser or pooled variance, of which one lives
+// at a time.
+constexpr std::uint64_t kLightmapBytes = 2 * sizeof(Vec3) + 1 + 4 + 2 * sizeof(Vec3);
 constexpr std::uint64_t kBytesPerPixel = 3 * sizeof(std::uint32_t);  // texel_at of both, readers
 
 // Rows of the master, the widest file, on one thread: as they were filled, as OpenEXR packs them, room to sort the

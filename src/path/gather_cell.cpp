@@ -67,7 +67,7 @@ void PathIntegrator::gather_cell(const GatherSite& site, bool back, Workspace& w
         if (static_cast<std::size_t>(std::popcount(enclosed)) == n) return;
         n = keep_open_points(starts, enclosed);
     }
-    find_sunlit(std::span(w.surfaces).first(n), true, key, w);
+    find_sunlit(std::span(w.surfaces).first(n), true, w);
     CellSink sink(links, out);
     for (std::uint32_t base = 0; base < links.size(); base += kWavefrontLanes) {
         const auto lanes = std::min<std::uint32_t>(kWavefrontLanes, static_cast<std::uint32_t>(links.size()) - base);

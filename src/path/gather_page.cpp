@@ -12,6 +12,7 @@ namespace lumel {
 void RadianceSums::reserve(std::size_t texels) {
     layers.reserve(texels);
     variance.reserve(texels);
+    half_difference.reserve(texels);
     sky_visibility.reserve(texels);
     ambient_occlusion.reserve(texels);
     bent_normal.reserve(texels);
@@ -22,6 +23,7 @@ void RadianceSums::reserve(std::size_t texels) {
 void RadianceSums::resize(std::size_t texels) {
     layers.resize(texels);
     variance.resize(texels);
+    half_difference.resize(texels);
     sky_visibility.resize(texels);
     ambient_occlusion.resize(texels);
     bent_normal.resize(texels);

@@ -5,49 +5,34 @@
 #include <cmath>
 #include <string>
 
-#include "support/traced_scene.h"
-#include "texel/texel_buffer.h"
+#include "support/charted_scene.h"
 
 namespace lumel {
 namespace {
 
-// A scene with its charts on one page, and the cells of a bake of so many samples.
+// The cells of a bake of so many samples.
 struct LitScene {
     Context context{2};
-    test::TracedScene traced;
-    ChartSet charts;
-    Atlas atlas;
-    TexelBuffer texels;
+    test::ChartedScene room;
     PathOptions path;
     SurfaceCells cells;
 
-    LitScene(Scene scene, double texels_per_metre, std::uint32_t samples) : traced(std::move(scene), context) {
-        ChartOptions layout;
-        layout.uv1 = Uv1Policy::ignore;
-        layout.texels_per_metre = texels_per_metre;
-        charts = make_charts(traced.scene, traced.geometry, layout, context).value();
-        atlas = make_atlas(traced.scene, traced.geometry, charts, layout, context).value();
-        EXPECT_EQ(atlas.pages.size(), 1u);
-        const auto triangles = triangles_by_page(traced.scene, traced.geometry, charts, atlas);
-        texels = rasterize_page(traced.scene, traced.geometry, charts, atlas, 0, triangles[0], context).value();
+    LitScene(Scene scene, double texels_per_metre, std::uint32_t samples)
+        : room(std::move(scene), texels_per_metre, context) {
         path.samples = samples;
-        cells = make_lit_cells(charts, atlas, traced.transport, path, context).value();
+        cells = make_lit_cells(room.charts, room.atlas, room.traced.transport, path, context).value();
     }
 
     RadianceSums gather(const SurfaceCells* with, std::uint64_t seed = 1) {
-        Transport transport = traced.transport;
-        transport.cells = with;
         PathOptions options = path;
         options.seed = seed;
-        return gather_page(texels, charts, atlas, transport, options, 0, texels.size(), context).value();
+        return room.gather(options, with);
     }
 };
 
 float total(const RadianceSums& sums, std::size_t i) {
-    float sum = 0.0f;
-    for (const LayerMoments& layer : sums.layers[i])
-        sum += (layer.irradiance.x + layer.irradiance.y + layer.irradiance.z) / 3.0f;
-    return sum;
+    const Vec3 light = test::total_irradiance(sums, i);
+    return (light.x + light.y + light.z) / 3.0f;
 }
 
 TEST(LightCells, TheirEdgeFallsWithTheRootOfTheSamples) {
@@ -100,9 +85,9 @@ TEST(LightCells, AgreeWithBruteForceInTheMean) {
 TEST(LightCells, EndPathsInsteadOfFollowingThem) {
     LitScene lit(test::room(), 8, 256);
     const auto rays = [&](const SurfaceCells* with) {
-        const std::uint64_t before = lit.traced.tracer->statistics().rays;
+        const std::uint64_t before = lit.room.traced.tracer->statistics().rays;
         lit.gather(with);
-        return static_cast<double>(lit.traced.tracer->statistics().rays - before);
+        return static_cast<double>(lit.room.traced.tracer->statistics().rays - before);
     };
     EXPECT_LT(rays(&lit.cells), 0.8 * rays(nullptr));
 }
@@ -135,7 +120,7 @@ TEST_P(LightCellsLeak, NoLightComesThroughAWall) {
     std::size_t count = 0;
     const float edge = 0.125f, side = 2.03f + 0.5f * thickness;
     for (std::size_t i = 0; i < sums.size(); ++i)
-        if (lit.texels.position[i].x < 1.5f) {
+        if (lit.room.texels.position[i].x < 1.5f) {
             bright += static_cast<double>(total(sums, i));
             ++count;
         }
@@ -144,9 +129,10 @@ TEST_P(LightCellsLeak, NoLightComesThroughAWall) {
     std::size_t dark = 0;
     for (std::size_t i = 0; i < sums.size(); ++i) {
         // Texels that the wall stands on lie in both rooms.
-        if (lit.texels.position[i].x < side + edge || !sums.valid(i)) continue;
+        if (lit.room.texels.position[i].x < side + edge || !sums.valid(i)) continue;
         ASSERT_LE(static_cast<double>(total(sums, i)), 0.01 * bright)
-            << lit.texels.position[i].x << ' ' << lit.texels.position[i].y << ' ' << lit.texels.position[i].z;
+            << lit.room.texels.position[i].x << ' ' << lit.room.texels.position[i].y << ' '
+            << lit.room.texels.position[i].z;
         ++dark;
     }
     EXPECT_GT(dark, 500u);

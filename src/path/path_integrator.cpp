@@ -30,9 +30,13 @@ PathIntegrator::PathIntegrator(const Transport& transport, const PathOptions& op
     : transport_(transport),
       options_(options),
       pairs_per_vertex_(path_detail::kFirstSunPair + static_cast<std::uint32_t>(transport.lights.sun_count())),
-      any_double_sided_(std::ranges::any_of(transport.geometry.triangles, [](const WorldTriangle& triangle) {
-          return (triangle.flags & kDoubleSided) != 0;
-      })) {}
+      any_double_sided_(
+          std::ranges::any_of(transport.geometry.triangles,
+                              [](const WorldTriangle& triangle) { return (triangle.flags & kDoubleSided) != 0; })),
+      knows_point_suns_(options.samples >= kSamplesPerTexel &&
+                        std::ranges::none_of(transport.scene.materials, [](const Material& material) {
+                            return material.alpha_mode == AlphaMode::blend;
+                        })) {}
 
 PathIntegrator::~PathIntegrator() = default;
 
@@ -81,8 +85,9 @@ void PathIntegrator::surface_starts(std::span<const SamplePoint> points, std::sp
         if (!w.blocked[k]) out[w.lanes[k]].origin += w.rays[k].direction * w.rays[k].tmax;
 }
 
-void PathIntegrator::find_sunlit(std::span<SurfaceStart> starts, bool bounced, std::uint32_t key, Workspace& w) const {
+void PathIntegrator::find_sunlit(std::span<SurfaceStart> starts, bool bounced, Workspace& w) const {
     LUMEL_CHECK(starts.size() <= kSamplesPerTexel, starts.size());
+    if (!knows_point_suns_) return;
     for (std::size_t sun = 0; sun < transport_.lights.sun_count(); ++sun) {
         if (!path_detail::is_point_sun(transport_.lights, sun)) continue;
         const LightSample sample = transport_.lights.sample_sun(sun, {}, bounced);
@@ -94,7 +99,6 @@ void PathIntegrator::find_sunlit(std::span<SurfaceStart> starts, bool bounced, s
             ray.origin = starts[i].origin;
             ray.direction = sample.direction;
             ray.skip = starts[i].skip;
-            ray.alpha_key = key + i * 0x9e3779b9u;
             w.lanes[w.shadow_rays.size()] = i;
             w.shadow_rays.push_back(ray);
         }
@@ -146,7 +150,9 @@ void PathIntegrator::gather_texel(const GatherSite& site, Workspace& w, Radiance
                                   const Context& context) const {
     const std::span<const SamplePoint> points = site.points;
     LUMEL_CHECK(!points.empty() && points.size() <= kSamplesPerTexel, points.size());
+    // Even and odd samples are each a point set of its own: what they differ by tells the noise (pool_variance()).
     const std::uint32_t key = sampler_key(options_.seed, site.id);
+    const std::array<std::uint32_t, 2> half_keys{key, mix32(key)};
     const bool both_sides =
         options_.two_sided && (transport_.geometry.triangles[points[0].triangle].flags & kDoubleSided) != 0;
 
@@ -162,8 +168,8 @@ void PathIntegrator::gather_texel(const GatherSite& site, Workspace& w, Radiance
                                                      transport_.tracer, transport_.geometry, w.rays, w.hits));
     }
 
-    find_sunlit(std::span(w.surfaces).first(n), false, key, w);
-    if (both_sides) find_sunlit(std::span(w.back_surfaces).first(n), false, key, w);
+    find_sunlit(std::span(w.surfaces).first(n), false, w);
+    if (both_sides) find_sunlit(std::span(w.back_surfaces).first(n), false, w);
     TexelSink sink(options_);
     const bool may_stop = options_.stop == StopRule::flux;
     const std::uint32_t step = may_stop ? (options_.samples + 9) / 10 : options_.samples;
@@ -173,10 +179,13 @@ void PathIntegrator::gather_texel(const GatherSite& site, Workspace& w, Radiance
         lanes = std::min({static_cast<std::uint32_t>(kWavefrontLanes), next_check - base, options_.samples - base});
         for (std::uint32_t lane = 0; lane < lanes; ++lane) {
             const std::uint32_t sample = base + lane;
+            const std::uint32_t half = sample & 1u, index = sample / 2;
             // Both sides take turns in pairs, so that each side meets every sample point.
-            const bool back = both_sides && ((sample ^ (sample / kSamplesPerTexel)) & 1u) != 0;
-            const SurfaceStart& start = (back ? w.back_surfaces : w.surfaces)[point_of(sample, key, n)];
-            w.starts[lane] = {start.origin, start.normal, key, sample, start.skip, start.sunlit};
+            const bool back = both_sides && ((index ^ (index / kSamplesPerTexel)) & 1u) != 0;
+            // Where there are fewer samples than points, the halves start from different ones.
+            const std::size_t point = point_of(index + half * static_cast<std::uint32_t>(n / 2), key, n);
+            const SurfaceStart& start = (back ? w.back_surfaces : w.surfaces)[point];
+            w.starts[lane] = {start.origin, start.normal, half_keys[half], index, start.skip, start.sunlit};
         }
         const auto starts = std::span<const PathStart>(w.starts).first(lanes);
         sink.begin(starts, both_sides ? 2.0f : 1.0f);

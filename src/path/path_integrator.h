@@ -110,8 +110,8 @@ public:
                         Workspace& workspace, std::span<SurfaceStart> out) const;
 
 private:
-    // Fills in `sunlit`: suns without size shine along one line, so that one ray a point serves all samples from it.
-    void find_sunlit(std::span<SurfaceStart> starts, bool bounced, std::uint32_t key, Workspace& workspace) const;
+    // Fills in `sunlit`, where knows_point_suns_.
+    void find_sunlit(std::span<SurfaceStart> starts, bool bounced, Workspace& workspace) const;
     template <class Sink>
     void trace_paths(std::span<const PathStart> starts, Workspace& workspace, Sink& sink) const;
 
@@ -119,6 +119,9 @@ private:
     PathOptions options_;
     std::uint32_t pairs_per_vertex_;
     bool any_double_sided_;  // else no point can be enclosed
+    // One shadow ray a point says for all its samples whether a sun without size reaches it: where there are at least
+    // as many samples as points, and no surface lets light through by chance.
+    bool knows_point_suns_;
 };
 
 // Stage: all texels of a page. `first`, `count`: the range of texels to do (the rest of the sums stay zero); any split

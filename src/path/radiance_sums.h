@@ -26,8 +26,11 @@ inline constexpr std::array<const char*, kLayerCount> kLayerNames{"direct", "sky
 // Per texel, SoA; index = texel of the TexelBuffer. All are means (already divided by the count of valid samples).
 struct RadianceSums {
     std::vector<std::array<LayerMoments, kLayerCount>> layers;
-    std::vector<Vec3> variance;  // of the mean of the total irradiance per channel (i.i.d. estimate: an upper one)
-    std::vector<float> sky_visibility;     // cosine-weighted share of directions that reach the sky, 0..1
+    // Of the mean of the total irradiance per channel. As traced: as if samples were independent, an upper estimate;
+    // pool_variance() makes it one that holds.
+    std::vector<Vec3> variance;
+    std::vector<Vec3> half_difference;  // of the means of even and odd samples, which are spread evenly each for itself
+    std::vector<float> sky_visibility;  // cosine-weighted share of directions that reach the sky, 0..1
     std::vector<float> ambient_occlusion;  // cosine-weighted share free within --ao-distance, 0..1 (1 = open)
     std::vector<Vec3> bent_normal;         // mean free direction, cosine-weighted, not normalised: |.| <= 1
     std::vector<std::uint32_t> count;      // valid samples: those whose gather ray met no back face

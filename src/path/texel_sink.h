@@ -65,10 +65,13 @@ public:
                 layers_[layer].irradiance[c] += static_cast<double>(wavefront_[layer].irradiance[c]);
             }
         for (std::size_t lane = 0; lane < starts_.size(); ++lane) {
-            ++traced_;
             if (!void_[lane]) ++count_;
+            Half& half = halves_[traced_ & 1u];
+            if (!void_[lane]) ++half.count;
+            for (std::size_t c = 0; c < 3; ++c) half.sum[c] += static_cast<double>(sample_[lane][c]);
             for (std::size_t c = 0; c < 3; ++c) channels_[c].add(static_cast<double>(sample_[lane][c]), !void_[lane]);
             luminance_.add(static_cast<double>(luminance(sample_[lane])), !void_[lane]);
+            ++traced_;
         }
     }
 
@@ -93,6 +96,7 @@ public:
         }
         for (std::size_t c = 0; c < 3; ++c) {
             out.variance[index][c] = static_cast<float>(channels_[c].variance(count_, traced_));
+            out.half_difference[index][c] = half_difference(c, out.variance[index][c]);
             out.bent_normal[index][c] = static_cast<float>(bent_[c] * inverse);
         }
         out.sky_visibility[index] = static_cast<float>(std::min(1.0, sky_visibility_ * inverse));
@@ -127,6 +131,19 @@ private:
         double sum_ = 0.0, squares_ = 0.0, counted_ = 0.0;
     };
 
+    // Where a half has no sample that counts it is unknown: what independent samples of that variance would give.
+    [[nodiscard]] float half_difference(std::size_t c, float variance) const {
+        if (halves_[0].count == 0 || halves_[1].count == 0) return 2.0f * std::sqrt(variance);
+        return static_cast<float>(halves_[0].mean(c) - halves_[1].mean(c));
+    }
+
+    // Every other sample, from the first or the second on.
+    struct Half {
+        std::array<double, 3> sum{};
+        std::uint32_t count = 0;
+        [[nodiscard]] double mean(std::size_t c) const { return sum[c] / count; }
+    };
+
     float ao_distance_;
     std::array<float, kLayerCount> scale_;
     std::array<bool, kLayerCount> included_;
@@ -138,6 +155,7 @@ private:
     std::array<LayerSums<double>, kLayerCount> layers_{};
     std::array<Moments, 3> channels_{};
     Moments luminance_;
+    std::array<Half, 2> halves_{};
     std::array<double, 3> bent_{};
     double sky_visibility_ = 0.0, open_ = 0.0;
     std::uint32_t count_ = 0, traced_ = 0;

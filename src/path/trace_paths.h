@@ -72,7 +72,7 @@ inline void begin_surfaces(std::span<const Hit> hits, const WorldGeometry& geome
         if (!hits[i].missed()) albedo[i] = surfaces.begin_albedo(hits[i].triangle, hits[i].b1, hits[i].b2);
 }
 
-// Light samples of one vertex, queued with their shadow rays. Shared by the first vertex (bounced = false, where every
+// Light samples of one vertex, queued with their shadow rays. Shared by the first vertex (where every
 // sample is an event of its own with a direction) and the later ones (where only the sum matters).
 template <class Workspace>
 class LightQueue {
@@ -191,14 +191,15 @@ void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w
 
     // Light that reaches the start from sampled directions, of void paths too.
     {
+        const bool suns_known = Sink::kSunsKnown && knows_point_suns_;
         LightQueue<Workspace> queue(transport_, w);
         for (std::uint32_t lane = 0; lane < count; ++lane) {
-            for (std::uint32_t bits = starts[lane].sunlit; bits != 0; bits &= bits - 1) {
+            for (std::uint32_t bits = suns_known ? starts[lane].sunlit : 0; bits != 0; bits &= bits - 1) {
                 const LightSample sun = lights.sample_sun(std::countr_zero(bits), {}, Sink::kFromCell);
                 sink.light(lane, Layer::direct, sun.direction, sun.weight);
             }
             queue.sample_all(
-                lane, starts[lane], 0, Sink::kFromCell, Sink::kSunsKnown,
+                lane, starts[lane], 0, Sink::kFromCell, suns_known,
                 [](float cosine) { return GatherHemisphere::pdf(cosine); },
                 [](float) {
                     return Vec3{1, 1, 1};

@@ -20,7 +20,6 @@ constexpr float kPlaneOffset = 0.5f;         // from each other's tangent plane,
 constexpr float kReach = 1.8f;               // how much farther apart in the world than in texels neighbours may be
 constexpr float kUnseen = 0.01f;             // differences of so much of the brighter texel are of no interest
 constexpr float kTiny = 1e-30f;
-constexpr float kMedianOfSquaredNormal = 0.4549364f;
 constexpr std::size_t kRowsPerBand = 16;  // at least the largest radius
 
 struct Guide {
@@ -36,8 +35,6 @@ public:
           k2_(options.strength * options.strength) {
         read_guides();
         smooth_variance();
-        const float share = noise_share();
-        for (Guide& guide : guides_) guide.variance *= share;
         find_row_starts();
     }
 
@@ -152,26 +149,6 @@ private:
                 }
             guides_[i].variance = sum / count;
         }
-    }
-
-    // What share of the stated variance the page shows. Samples that are spread evenly (Owen-scrambled Sobol points)
-    // err less than the variance among them says, by how much depends on the light. A texel against the mean of its
-    // left and right neighbours leaves noise, curvature of the light (which is why the median decides) and no slope.
-    [[nodiscard]] float noise_share() const {
-        std::vector<float> ratios;
-        for (std::size_t i = 0; i < guides_.size(); ++i) {
-            const std::uint32_t l = at(texels_.x[i] - 1, texels_.y[i]), r = at(texels_.x[i] + 1, texels_.y[i]);
-            if (!sums_.valid(i) || l == kNone || r == kNone) continue;
-            if (!are_neighbours(i, l, -1, 0) || !are_neighbours(i, r, 1, 0)) continue;
-            const Vec3 d = guides_[i].irradiance - (guides_[l].irradiance + guides_[r].irradiance) * 0.5f;
-            const Vec3 variance = guides_[i].variance + (guides_[l].variance + guides_[r].variance) * 0.25f;
-            const float stated = variance.x + variance.y + variance.z;
-            if (stated > 0.0f) ratios.push_back(dot(d, d) / stated);
-        }
-        if (ratios.empty()) return 1.0f;
-        const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
-        std::nth_element(ratios.begin(), middle, ratios.end());
-        return std::min(1.0f, *middle / kMedianOfSquaredNormal);
     }
 
     void find_row_starts() {
