@@ -69,6 +69,7 @@ TEST(Metrics, NonFiniteTexelsMakeTheErrorInfinite) {
     EXPECT_EQ(m.non_finite, 1u);
     EXPECT_EQ(m.nrmse, std::numeric_limits<double>::infinity());
     EXPECT_EQ(m.relmse, std::numeric_limits<double>::infinity());
+    EXPECT_EQ(m.relmse_without_worst, std::numeric_limits<double>::infinity());
     EXPECT_EQ(m.bias, 0.0);
 }
 
@@ -128,6 +129,32 @@ TEST(Metrics, Percentile) {
     EXPECT_DOUBLE_EQ(percentile(values, 0.625), 3.5);
     EXPECT_DOUBLE_EQ(percentile(values, 1.0), 5.0);
     EXPECT_EQ(percentile({}, 0.5), 0.0);
+}
+
+// A thousandth of a thousand is one, of one more it is two, rounded up.
+TEST(Metrics, MeanLeavesOutTheWorstThousandth) {
+    std::vector<double> errors(1000, 2.0);
+    errors[300] = 1e9;
+    EXPECT_DOUBLE_EQ(mean_without_worst(errors), 2.0);
+    errors[700] = 1001.0;  // a second one stays: 998 * 2 + 1001 = 2997 over 999
+    EXPECT_DOUBLE_EQ(mean_without_worst(errors), 3.0);
+    errors.push_back(2.0);
+    EXPECT_DOUBLE_EQ(mean_without_worst(errors), 2.0);
+    EXPECT_EQ(mean_without_worst({5.0}), 0.0);
+    EXPECT_EQ(mean_without_worst({5.0, 1.0}), 1.0);
+    EXPECT_EQ(mean_without_worst({}), 0.0);
+}
+
+// 40 x 25 texels of 1, all but one 2: their terms are 1 / 1.01.
+TEST(Metrics, RelMseWithoutTheWorstTexel) {
+    Image reference(40, 25, 1), image(40, 25, 1);
+    for (float& v : reference.data) v = 1.0f;
+    for (float& v : image.data) v = 2.0f;
+    image.at(7, 3)[0] = 1001.0f;
+    const ImageMetrics m = compare_images(image, reference);
+    EXPECT_NEAR(m.relmse, (999 + 1e6) / 1.01 / 1000, 1e-9);  // a thousand rounded terms
+    EXPECT_NEAR(m.relmse_without_worst, 1 / 1.01, 1e-12);
+    EXPECT_EQ(compare_images(grey(1, 1, {2}), grey(1, 1, {1})).relmse_without_worst, 0.0);
 }
 
 TEST(Metrics, MaskFromImage) { EXPECT_EQ(mask_from_image(grey(3, 1, {0, 1, 0.4f})), (Mask{0, 1, 0})); }
