@@ -213,7 +213,7 @@ Result<Image> render_picture(const Transport& transport, const PathOptions& path
                 }
             },
             "render", [&] { return transport.tracer.statistics().rays - rays_before; });
-        if (!done) return cancelled_error("the render was cancelled");
+        if (!done) return cancelled_error();
     }
     return image;
 }
