@@ -5,11 +5,11 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <map>
 #include <string>
 
 #include "command.h"
 #include "interrupt.h"
+#include "stage_clock.h"
 
 namespace lumel::cli {
 namespace {
@@ -49,17 +49,13 @@ public:
                                     : ProgressStyle::plain) {}
 
     void show(const Progress& progress) {
-        const auto now = Clock::now();
         const bool resumed = progress.stage != name_;
         if (resumed) {
             end_line();
             name_ = progress.stage;
         }
         const bool done = progress.fraction >= 1.0;
-        Stage& stage = stages_[name_];
-        if (stage.finished && !done) stage = {};
-        if (!resumed) stage.seconds += std::chrono::duration<double>(now - last_).count();
-        last_ = now;
+        Stage& stage = clock_.report(name_, progress.fraction, Clock::now());
         // A bar appears at once, a line only where the stage takes long.
         const bool is_due = style_ == ProgressStyle::plain ? stage.seconds - stage.shown >= 5.0
                                                            : resumed || stage.seconds - stage.shown >= 0.1;
@@ -67,8 +63,8 @@ public:
         stage.shown = stage.seconds;
         stage.finished = done;
         const double elapsed = stage.seconds;
-        const double left = progress.fraction > 0.0 ? elapsed / progress.fraction - elapsed : 0.0;
-        const double rate = elapsed > 0.0 ? static_cast<double>(progress.rays) / elapsed * 1e-6 : 0.0;
+        const double left = stage.seconds_left(progress.fraction);
+        const double rate = stage.per_second(static_cast<double>(progress.rays)) * 1e-6;
         switch (style_) {
             case ProgressStyle::none: break;
             case ProgressStyle::json:
@@ -95,12 +91,6 @@ public:
 private:
     using Clock = std::chrono::steady_clock;
 
-    // Some come and go, with each page of a bake: they go on where they were.
-    struct Stage {
-        double seconds = 0.0, shown = 0.0;  // that it ran, and had run when it was last shown
-        bool finished = false;
-    };
-
     void bar(const Progress& progress, double elapsed, double left, double rate) {
         constexpr int kCells = 30;
         const int filled = static_cast<int>(std::lround(progress.fraction * kCells));
@@ -114,9 +104,8 @@ private:
     }
 
     ProgressStyle style_;
-    std::map<std::string, Stage> stages_;
+    StageClock clock_{Clock::now()};
     std::string name_;  // of the stage that runs
-    Clock::time_point last_{};
     bool open_line_ = false;
 };
 
