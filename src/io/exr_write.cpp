@@ -13,6 +13,7 @@
 #include <optional>
 #include <string_view>
 
+#include "base/cancelled.h"
 #include "base/check.h"
 #include "base/parallel.h"
 #include "base/try.h"
@@ -47,17 +48,17 @@ public:
         init.write_fn = write_bytes;
         init.error_handler_fn = [](exr_const_context_t, exr_result_t, const char*) {};  // it would print
         init.zip_level = kZipLevel;
-        try_to(exr_start_write(&context_, name.c_str(), EXR_WRITE_FILE_DIRECTLY, &init));
+        note(exr_start_write(&context_, name.c_str(), EXR_WRITE_FILE_DIRECTLY, &init));
         int part = 0;
-        if (ok()) try_to(exr_add_part(context_, nullptr, EXR_STORAGE_SCANLINE, &part));
+        if (ok()) note(exr_add_part(context_, nullptr, EXR_STORAGE_SCANLINE, &part));
         if (ok())
-            try_to(exr_initialize_required_attr_simple(context_, 0, static_cast<std::int32_t>(width),
-                                                       static_cast<std::int32_t>(height), EXR_COMPRESSION_ZIP));
+            note(exr_initialize_required_attr_simple(context_, 0, static_cast<std::int32_t>(width),
+                                                     static_cast<std::int32_t>(height), EXR_COMPRESSION_ZIP));
         for (const ExrChannelSource& channel : channels)
             if (ok())
-                try_to(exr_add_channel(context_, 0, channel.name.c_str(), pixel_type(channel.type),
-                                       EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1));
-        if (ok()) try_to(exr_write_header(context_));
+                note(exr_add_channel(context_, 0, channel.name.c_str(), pixel_type(channel.type),
+                                     EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1));
+        if (ok()) note(exr_write_header(context_));
     }
     ~ExrFile() {
         if (context_) exr_finish(&context_);
@@ -71,19 +72,19 @@ public:
 
     [[nodiscard]] exr_chunk_info_t chunk_info(std::uint32_t y) {
         exr_chunk_info_t info{};
-        if (ok()) try_to(exr_write_scanline_chunk_info(context_, 0, static_cast<int>(y), &info));
+        if (ok()) note(exr_write_scanline_chunk_info(context_, 0, static_cast<int>(y), &info));
         return info;
     }
     // In ascending order of rows.
     void write_chunk(std::uint32_t y, std::span<const std::byte> bytes) {
-        if (ok()) try_to(exr_write_scanline_chunk(context_, 0, static_cast<int>(y), bytes.data(), bytes.size()));
+        if (ok()) note(exr_write_scanline_chunk(context_, 0, static_cast<int>(y), bytes.data(), bytes.size()));
     }
     void fail(exr_result_t result) {
         if (ok()) result_ = result;
     }
     // Writes what only the end knows: where the chunks are.
     void finish() {
-        if (ok()) try_to(exr_finish(&context_));
+        if (ok()) note(exr_finish(&context_));
     }
 
 private:
@@ -94,7 +95,8 @@ private:
         file.write({static_cast<const std::byte*>(bytes), size});
         return file.ok() ? static_cast<std::int64_t>(size) : -1;
     }
-    void try_to(exr_result_t result) { result_ = result; }
+    // The result of a call that was made because all before it had succeeded.
+    void note(exr_result_t result) { result_ = result; }
 
     AtomicFile& file_;
     exr_context_t context_ = nullptr;
@@ -217,9 +219,8 @@ public:
         const auto encode = [&](const ChunkRange& range) {
             for (std::size_t i = range.begin; i < range.end; ++i) encode_chunk(*encoders_[range.worker], batch_[i]);
         };
-        if (!file_.ok())
-            return y;
-        else if (!context_)
+        if (!file_.ok()) return y;
+        if (!context_)
             encode({0, 0, count, 0});
         else if (!parallel_for(*context_, count, 1, encode))
             return std::nullopt;
@@ -282,7 +283,7 @@ Status write_exr(const std::filesystem::path& path, std::uint32_t width, std::ui
         ChunkWriter chunks(output, width, height, channels, row, context);
         for (std::uint32_t y = 0; y < height && output.ok();) {
             const std::optional<std::uint32_t> next = chunks.write_batch(y);
-            if (!next) return Error{ErrorCode::cancelled, "cancelled while writing", path.string(), {}};
+            if (!next) return cancelled_error();
             y = *next;
             if (progress && output.ok()) progress(static_cast<double>(y) / height);
         }
