@@ -15,6 +15,18 @@ sed 's/"intensity":100/"intensity":3e38/' ok.gltf >bright.gltf
 cp ok.gltf side.gltf
 echo '{ "sky": ' >side.lumel.json
 echo hello >text.glb
+echo '{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"name":"nothing"}]}' >empty.gltf
+sed 's/"name":"floor"},/"name":"floor","extras":{"lightmap":false}},/' ok.gltf >probe.gltf
+# textured FILE: the floor with this file as its texture
+textured() {
+    local material='{"name":"paint","pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}'
+    local texture="\"textures\":[{\"source\":0}],\"images\":[{\"name\":\"wood\",\"uri\":\"$1\"}]"
+    sed "s/\"indices\":1}/\"indices\":1,\"material\":0}/; s/^\"accessors\"/\"materials\":[$material],$texture,&/" ok.gltf
+}
+textured gone.png >missing.gltf
+textured huge.png >huge.gltf
+# No more than a header that says 16384 x 16384.
+printf '\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x40\0\0\0\x40\0\x08\x06\0\0\0' >huge.png
 
 expect 0 '' bake ok.gltf -o out "${quick[@]}"
 expect 0 '' bake ok.gltf -o out/ "${quick[@]}" --sky 1,1,1
@@ -39,7 +51,9 @@ done
 for pair in 'view.exr view.png' 'view.png view.pfm'; do
     # shellcheck disable=SC2086
     expect 0 mixed-kinds compare $pair --json
-    grep -q nrmse out.txt || complain "compare $pair: standard output is $(cat out.txt)"
+    for figure in nrmse relmse_without_worst; do
+        grep -q "\"$figure\"" out.txt || complain "compare $pair: no $figure in $(cat out.txt)"
+    done
 done
 for pair in 'view.exr view.pfm' 'view.png view.png'; do
     # shellcheck disable=SC2086
@@ -143,6 +157,15 @@ expect 1 side.lumel.json bake side.gltf -o out "${quick[@]}"
 expect 1 --sky bake dark.gltf -o out "${quick[@]}"
 expect 1 --sky bake dark.gltf -o out "${quick[@]}" --sun-direction 0,-1,0 --sun-illuminance 0
 expect 1 text.glb bake ok.gltf -o out "${quick[@]}" --sky text.glb
+expect 1 'empty.gltf: the scene has no triangles (give a scene with at least one mesh of triangles in its default scene)' \
+    bake empty.gltf -o out "${quick[@]}"
+expect 1 'probe.gltf: no surface of the scene gets lightmap texels (every node is of another class than lightmap' \
+    bake probe.gltf -o out "${quick[@]}"
+wood="image 0 'wood', used as baseColorTexture of material 0 'paint'"
+expect 1 "missing.gltf: $wood: its file 'gone.png' cannot be read: there is no such file (put the file beside the scene)" \
+    bake missing.gltf -o out "${quick[@]}"
+expect 1 "huge.gltf: $wood: has 16384 x 16384 pixels; at most 8192 x 8192 are read (make it smaller)" \
+    bake huge.gltf -o out "${quick[@]}"
 expect 1 --max-memory bake ok.gltf -o out "${quick[@]}" --max-memory 1K
 # What it says it needs is enough, and is not exceeded.
 need=$(sed -n 's/.*this bake is predicted to need about \([0-9]*\) MB.*/\1/p' err.txt)
@@ -152,6 +175,26 @@ peak=$(sed -n 's/.*"peak_memory_bytes": \([0-9]*\).*/\1/p' need/report.json)
 [ "$peak" -le $((need << 20)) ] || complain "a bake that needs $need MB took $peak bytes"
 expect 1 'is not a folder' bake ok.gltf -o text.glb "${quick[@]}"
 expect 1 'would be replaced' bake out/scene.glb -o out "${quick[@]}"
+# Folders that may not be written to. Root may write to all: then as nobody, where that one can run the command.
+mkdir -m 555 locked
+drop=
+if [ -w locked ]; then
+    chmod 755 .
+    drop='setpriv --reuid=65534 --regid=65534 --clear-groups'
+fi
+printf '#!/bin/sh\nexec %s "%s" "$@"\n' "$drop" "$lumel" >unprivileged
+chmod +x unprivileged
+if ./unprivileged info ok.gltf >/dev/null 2>&1; then
+    remedy='(check the permissions of the folder, or choose another with -o)'
+    lumel=./unprivileged expect 1 "locked: writing to the folder failed: Permission denied $remedy" \
+        bake ok.gltf -o locked "${quick[@]}"
+    lumel=./unprivileged expect 1 "locked/new: creating the folder failed: Permission denied $remedy" \
+        bake ok.gltf -o locked/new "${quick[@]}"
+    lumel=./unprivileged expect 1 "locked/v.png" render ok.gltf -o locked/v.png --samples 1 --resolution 16x16
+    [ -z "$(ls -A locked)" ] || complain "locked/ holds $(ls -A locked)"
+else
+    echo 'skipped: nobody here lacks the permission to write'
+fi
 mkdir web
 echo '{"name": "a page"}' >web/manifest.json
 expect 1 web/manifest.json bake ok.gltf -o web "${quick[@]}"
@@ -176,25 +219,29 @@ done
 cmp -s direct1/preview_view_0.png direct2/preview_view_0.png && complain 'views without noise'
 cmp -s sky1/preview_view_0.png sky2/preview_view_0.png || complain 'views ignore --include'
 
-# Stopped in two stages: paths, and the writing of a large page, which looks at nothing while it compresses a picture.
+# stop SIGNAL STAGE ARGUMENTS...: a bake is stopped as soon as it reports this stage. A large page takes seconds to write.
 stop() {
-    local signal=$1 delay=$2 process begin code
+    local signal=$1 stage=$2 process begin code
     shift 2
-    "$lumel" bake ok.gltf -o out "$@" >out.txt 2>err.txt &
+    : >err.txt
+    "$lumel" bake ok.gltf -o out --progress json "$@" >out.txt 2>err.txt &
     process=$!
-    sleep "$delay"
+    until grep -qF "\"stage\":\"$stage\"" err.txt; do
+        kill -0 $process 2>/dev/null || break
+        sleep 0.02
+    done
     begin=$(date +%s%N)
     kill -s "$signal" $process
     wait $process
     code=$?
     # A second is the promise; twice that where the machine has other things to do.
-    [ $((($(date +%s%N) - begin) / 1000000)) -lt 2000 ] || complain "$signal after $delay s: too slow"
-    [ $code = 1 ] || complain "$signal after $delay s: exit code $code"
-    grep -qF cancelled err.txt || complain "$signal after $delay s: says $(cat err.txt)"
-    compgen -G '*.partial-*' >/dev/null && complain "$signal after $delay s: left $(echo ./*.partial-*)"
-    [ "$(cat out/* | cksum)" = "$before" ] || complain "$signal after $delay s: the older output changed"
+    [ $((($(date +%s%N) - begin) / 1000000)) -lt 2000 ] || complain "$signal in $stage: too slow"
+    [ $code = 1 ] || complain "$signal in $stage: exit code $code"
+    grep -qF cancelled err.txt || complain "$signal in $stage: says $(cat err.txt)"
+    compgen -G '*.partial-*' >/dev/null && complain "$signal in $stage: left $(echo ./*.partial-*)"
+    [ "$(cat out/* | cksum)" = "$before" ] || complain "$signal in $stage: the older output changed"
 }
-stop TERM 0.5 --samples 1000000
-stop INT 1 --resolution 8192x8192 --texels-per-metre 10 --samples 1
+stop TERM trace --samples 1000000
+stop INT write --resolution 8192x8192 --texels-per-metre 10 --samples 1
 
 finish
