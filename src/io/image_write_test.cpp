@@ -102,7 +102,7 @@ TEST(WriteExr, ChannelsKeepTheirNamesAndRowsTheirPlaces) {
     for (std::size_t x = 0; x < 5; ++x) EXPECT_EQ(read->planes[1][5 * 17 + x], 0.0f) << "an empty row";
 }
 
-// Blocks of rows differ with the threads; the last one is cut short.
+// Chunks are of 16 rows, the last one of 13; how many make a batch differs with the threads.
 TEST(WriteExr, AnyNumberOfThreadsWritesTheSameFile) {
     const TemporaryFolder folder;
     const std::vector<ExrChannelSource> channels{{"R", ExrType::full}, {"G", ExrType::half}};
