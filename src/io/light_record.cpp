@@ -130,9 +130,12 @@ Json layer_names(const Include& include) {
 Result<LightRecord> read_light_record(const fs::path& folder) {
     const fs::path path = folder / kManifestFile;
     LUMEL_TRY(const std::vector<std::byte> bytes, read_file(path, kMaxManifest));
-    LUMEL_TRY(const Json manifest,
-              parse_json({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path.string()));
-    Result<LightRecord> record = read_record(manifest, folder, path.string());
+    return parse_light_record({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, folder, path.string());
+}
+
+Result<LightRecord> parse_light_record(std::string_view manifest, const fs::path& folder, const std::string& where) {
+    LUMEL_TRY(const Json json, parse_json(manifest, where));
+    Result<LightRecord> record = read_record(json, folder, where);
     if (record.ok()) return record;
     Error error = record.error();
     if (error.remedy.empty())

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "lumel/options.h"
 #include "lumel/result.h"
@@ -21,6 +22,9 @@ struct LightRecord {
 
 // From the manifest of an output folder. Errors: io; invalid_input where it is no manifest of ours.
 Result<LightRecord> read_light_record(const std::filesystem::path& folder);
+// The same from its text, which `where` names in messages.
+Result<LightRecord> parse_light_record(std::string_view manifest, const std::filesystem::path& folder,
+                                       const std::string& where);
 
 // Names the bytes of a file. Errors: io.
 Result<std::string> hash_file(const std::filesystem::path& path);
