@@ -62,6 +62,8 @@ private:
                 const std::uint32_t vertex = indices.index(3 * k + c);
                 if (vertex >= uvs.count) return invalid(where_, "has an index beyond its vertices");
                 out.uv[c] = {uvs.number(vertex, 0), uvs.number(vertex, 1)};
+                if (!std::isfinite(out.uv[c].x) || !std::isfinite(out.uv[c].y))
+                    return invalid(where_, "has a lightmap UV that is not finite");
             }
         }
         return success();

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
+#include <limits>
+#include <span>
 
 #include "io/gltf_write.h"
 #include "io/image_io.h"
@@ -145,6 +148,22 @@ TEST(ReadBaked, AnOrdinaryGltfIsNoBake) {
     const auto baked = read_baked(folder.path(), loaded.scene(), flatten(loaded.scene(), context).value());
     ASSERT_FALSE(baked.ok());
     EXPECT_NE(baked.error().text().find("LUMEL_lightmap"), std::string::npos);
+}
+
+// A NaN would be no place in a page.
+TEST(ReadBaked, UvsThatAreNotFiniteAreRefused) {
+    const Folder f(triangle_scene());
+    const float uv = read_baked_uvs(f.folder / kSceneFile, f.loaded.scene(), f.geometry).value().at(0).uv[1].x;
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    auto bytes = read_file(f.folder / kSceneFile, 1 << 20).value();
+    const auto old_bytes = std::as_bytes(std::span(&uv, 1)), new_bytes = std::as_bytes(std::span(&nan, 1));
+    const auto at = std::search(bytes.begin(), bytes.end(), old_bytes.begin(), old_bytes.end());
+    ASSERT_NE(at, bytes.end());
+    std::copy(new_bytes.begin(), new_bytes.end(), at);
+    ASSERT_TRUE(write_file(f.folder / kSceneFile, bytes).ok());
+    const auto read = read_baked_uvs(f.folder / kSceneFile, f.loaded.scene(), f.geometry);
+    ASSERT_FALSE(read.ok());
+    EXPECT_NE(read.error().text().find("not finite"), std::string::npos) << read.error().text();
 }
 
 // Any flipped byte of the JSON or truncation: an error or other UVs, never a crash (run under sanitizers).
