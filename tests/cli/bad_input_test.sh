@@ -241,7 +241,8 @@ stop() {
     compgen -G '*.partial-*' >/dev/null && complain "$signal in $stage: left $(echo ./*.partial-*)"
     [ "$(cat out/* | cksum)" = "$before" ] || complain "$signal in $stage: the older output changed"
 }
-stop TERM trace --samples 1000000
+# Many texels of few samples: the stage reports when the first of them are done.
+stop TERM trace --resolution 1024x1024 --texels-per-metre 10 --samples 1000
 stop INT write --resolution 8192x8192 --texels-per-metre 10 --samples 1
 
 finish
