@@ -4,14 +4,12 @@
 //   relMSE of (L0, L1)  the same of the vector of four coefficients: products and squares are dot products, and the
 //                       mean is that of the vector's length; a single coefficient has no scale of its own where it
 //                       passes through zero
-//   coverage            share of texels and channels whose 95 % interval, 1.96 deviations by the texel's stated
-//   variance
-//                       (and the reference's, by its halves), contains r; lowest and highest of the deciles by
-//                       brightness
+//   coverage            share of texels and channels whose 95 % interval, 1.96 deviations by the stated variance
+//                       (and the reference's, by its halves), contains r; lowest and highest decile by brightness
 //   block bias          of the mean light of 16 x 16 texels, relative: (x - r) / (r + 0.01 mean(r)), all channels
 //                       together; 95th percentile over blocks of its size. Noise that has not averaged out over a block
-//                       is in it: `block_noise` is what noise alone would give, by the texels' own variance (an upper
-//                       estimate, for it takes samples as independent)
+//                       is in it: `block_noise` is what noise alone would give, by the texels' own variance (of the
+//                       peer an upper estimate, for it takes samples as independent)
 // Based on: Rousselle et al. 2011 (relMSE).
 #pragma once
 
