@@ -12,5 +12,5 @@ configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/lumelConfig.cmake.in
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/lumelConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES
   ${PROJECT_BINARY_DIR}/lumelConfig.cmake ${PROJECT_BINARY_DIR}/lumelConfigVersion.cmake
-  ${PROJECT_SOURCE_DIR}/cmake/FindEmbree.cmake
+  ${PROJECT_SOURCE_DIR}/cmake/FindEmbree.cmake ${PROJECT_SOURCE_DIR}/cmake/FindTurboJpeg.cmake
   DESTINATION ${package_dir})

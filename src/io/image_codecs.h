@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "image/image.h"
 #include "io/image_io.h"
@@ -25,7 +26,17 @@ ImageFormat image_format(std::span<const std::byte> bytes);
 Status check_image_size(std::uint64_t width, std::uint64_t height, std::uint64_t channels, std::uint32_t max_edge,
                         std::size_t file_bytes, const std::string& where);
 
-Result<Image> decode_stb(std::span<const std::byte> bytes, const std::string& where);
+// An image of 8 or 16 bits as its file stores it, not linearised: rows from the top; 1 channel is grey, 2 are grey and
+// alpha, 3 RGB, 4 RGBA. Codes of 16 bits are in this machine's byte order.
+struct CodedImage {
+    std::uint32_t width = 0, height = 0, channels = 1, bits = 8;
+    std::vector<std::uint8_t> codes;  // width * height * channels * bits / 8 bytes
+};
+Result<CodedImage> decode_png(std::span<const std::byte> bytes, std::uint32_t max_edge, const std::string& where);
+Result<CodedImage> decode_jpeg(std::span<const std::byte> bytes, std::uint32_t max_edge, const std::string& where);
+
+// PNG or JPEG, codes divided by the largest.
+Result<Image> decode_coded_image(std::span<const std::byte> bytes, const std::string& where);
 Result<Image> decode_hdr(std::span<const std::byte> bytes, const std::string& where);
 Result<Image> decode_pfm(std::span<const std::byte> bytes, const std::string& where);
 Result<Image> decode_pgm(std::span<const std::byte> bytes, const std::string& where);

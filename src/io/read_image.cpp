@@ -67,7 +67,7 @@ Status check_image_size(std::uint64_t width, std::uint64_t height, std::uint64_t
 Result<Image> decode_image(std::span<const std::byte> bytes, const std::string& where) {
     switch (image_format(bytes)) {
         case ImageFormat::png:
-        case ImageFormat::jpeg: return decode_stb(bytes, where);
+        case ImageFormat::jpeg: return decode_coded_image(bytes, where);
         case ImageFormat::hdr: return decode_hdr(bytes, where);
         case ImageFormat::exr: return decode_exr(bytes, where);
         case ImageFormat::pfm: return decode_pfm(bytes, where);

@@ -1,4 +1,5 @@
-// Any bytes as a PNG or JPEG texture. The decoder is stb_image's; this target watches the fence around it.
+// Any bytes as a PNG or JPEG texture. The decoders are libpng's and libjpeg-turbo's; this target watches our use of
+// them.
 #include "base/check.h"
 #include "fuzz/seed_corpus.h"
 #include "io/image_codecs.h"
@@ -23,6 +24,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto bytes = lumel::fuzz::as_span(data, size);
     const auto texture = lumel::decode_texture(bytes, "fuzz", true);
     if (texture.ok()) LUMEL_CHECK(texture->rgba.size() == std::size_t{texture->width} * texture->height * 4);
-    (void)lumel::decode_stb(bytes, "fuzz");
+    (void)lumel::decode_coded_image(bytes, "fuzz");
     return 0;
 }
