@@ -119,7 +119,7 @@ std::size_t FluxIntegrator::drop_void_paths(std::size_t count, Workspace& w, Tex
     for (std::uint32_t lane = 0; lane < count; ++lane) {
         const Hit hit = w.hits[lane];
         if (!hit.missed() && hit.back_face && !(transport_.geometry.triangles[hit.triangle].flags & kDoubleSided)) {
-            sink.void_path(lane);
+            sink.void_path(lane, 1.0f);
             continue;
         }
         sink.free_path(lane, w.paths[lane].direction, w.paths[lane].pdf, hit.missed() ? kInfiniteDistance : hit.t,

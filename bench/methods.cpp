@@ -19,10 +19,12 @@ Transport transport_through(const BenchScene& bench, const LightSet& lights) {
     return {bench.scene, bench.geometry, bench.surfaces, lights, *bench.tracer};
 }
 
-RadianceSums gather(const GatherJob& job, const Transport& transport) {
+RadianceSums gather(const GatherJob& job, const Transport& transport, bool guided) {
     const BenchScene& b = job.bench;
-    RadianceSums sums = need(
-        gather_page(b.texels, b.charts, b.atlas, transport, job.path, job.range.first, job.range.count, job.context));
+    PathOptions path = job.path;
+    path.guided = guided;
+    RadianceSums sums =
+        need(gather_page(b.texels, b.charts, b.atlas, transport, path, job.range.first, job.range.count, job.context));
     need(pool_variance(b.texels, sums, job.context));
     return sums;
 }
@@ -31,16 +33,17 @@ template <Choice choice>
 RadianceSums brute_force(const GatherJob& job) {
     const BenchScene& b = job.bench;
     const LightSet lights(b.scene, b.geometry, b.surfaces, choice);
-    return gather(job, transport_through(b, lights));
+    return gather(job, transport_through(b, lights), false);
 }
 
+template <bool guided>
 RadianceSums with_cells(const GatherJob& job) {
     const BenchScene& b = job.bench;
     const LightSet lights(b.scene, b.geometry, b.surfaces, Choice::tree);
     Transport transport = transport_through(b, lights);
     const SurfaceCells cells = need(make_lit_cells(b.charts, b.atlas, transport, job.path, job.context));
     transport.cells = &cells;
-    return gather(job, transport);
+    return gather(job, transport, guided);
 }
 
 RadianceSums flux_with(const GatherJob& job, const FluxChoices& choices, Choice choice) {
@@ -82,7 +85,8 @@ constexpr Method kMethods[] = {
     {"flux-all", "the same, all lights at each hit", true, flux_all},
     {"power", "Lumel's brute force, local lights chosen by power", true, brute_force<Choice::power>},
     {"tree", "Lumel's brute force, local lights chosen by the light tree", true, brute_force<Choice::tree>},
-    {"cells", "Lumel's default: the same, paths end at surface cells", true, with_cells},
+    {"cells", "the same, paths end at surface cells", true, with_cells<false>},
+    {"guided", "Lumel's default: the same, first rays are guided", true, with_cells<true>},
     {"flux-as-power", "flux with all choices set to those of power: is it a fair one?", false,
      flux_as_lumel<Choice::power>},
     {"flux-as-tree", "flux with all choices set to those of tree", false, flux_as_lumel<Choice::tree>},

@@ -98,8 +98,9 @@ void run_replay(const Options& options) {
             const std::uint32_t n =
                 sample_points(texels, texel, bench.scene, bench.geometry, bench.charts, bench.atlas, points);
             const std::uint64_t id = std::uint64_t{texels.y[texel]} << 16 | texels.x[texel];
-            integrator.gather_texel({std::span(points).first(n), id, texels.world_size[texel]}, *workspace, sums, i,
-                                    context);
+            const GatherSite site{std::span(points).first(n), id, texels.world_size[texel]};
+            const auto index = static_cast<std::uint32_t>(i);
+            integrator.gather_texels({&site, 1}, {&index, 1}, *workspace, sums, context);
         }
     };
     const RecordingTracer recorder(*bench.tracer);

@@ -25,7 +25,8 @@ namespace {
 
 struct Options {
     std::string scene, output, resolution, max_memory, progress;
-    std::string preset = "medium", uv1 = "automatic", integrator = "auto", stop = "fixed", denoise = "auto";
+    std::string preset = "medium", uv1 = "automatic", integrator = "auto", guide = "auto", stop = "fixed",
+                denoise = "auto";
     std::uint32_t views = 2, view_samples = 32;
     std::optional<double> error, confidence;
     BakeOptions values;
@@ -65,6 +66,7 @@ Result<BakeOptions> read_options(const Options& options) {
     out.integrator = options.integrator == "cells"   ? Integrator::cells
                      : options.integrator == "paths" ? Integrator::paths
                                                      : Integrator::automatic;
+    out.guide = options.guide != "off";
     out.stop = options.stop == "flux" ? StopRule::flux : StopRule::fixed;
     return out;
 }
@@ -226,6 +228,10 @@ Run add_bake(CLI::App& app) {
     app.add_option("--integrator", options->integrator,
                    "auto, cells (paths end at a cache of the surfaces' light) or paths (brute force)")
         ->check(CLI::IsMember({"auto", "cells", "paths"}))
+        ->group(transport);
+    app.add_option("--guide", options->guide,
+                   "auto (with cells: paths follow the light that nearby texels have seen) or off")
+        ->check(CLI::IsMember({"auto", "off"}))
         ->group(transport);
     app.add_option(
            "--stop", options->stop,

@@ -79,6 +79,7 @@ struct BakeOptions {
     std::uint64_t seed = 1;
     double ao_distance = 0.0;  // metres; 0: a tenth of the scene's diagonal
     Integrator integrator = Integrator::automatic;
+    bool guide = true;  // with cells: first rays follow the light that texels nearby have seen
     StopRule stop = StopRule::fixed;
     double error = 0.05;       // of StopRule::flux: relative
     double confidence = 0.95;  // of StopRule::flux: 0.5..0.9999

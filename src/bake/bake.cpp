@@ -239,7 +239,7 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
         return Error{ErrorCode::invalid_input, "the scene has no light, no emissive surface and no sky", scene.source,
                      "give it a sky, for example --sky 1,1,1, or a sun with --sun-direction"};
 
-    const PathOptions path = path_options(options, geometry);
+    PathOptions path = path_options(options, geometry);
     std::uint32_t cell_samples = uses_cells(options, path) ? path.samples : 0;
     ChartSet charts;
     Atlas atlas;
@@ -284,6 +284,7 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
         const StageTimer timer(report, "cells");
         LUMEL_TRY(cells, make_lit_cells(charts, atlas, transport, path, context));
         transport.cells = &*cells;
+        path.guided = options.guide;
         report.cells = cells->size();
         report.trace_wall_seconds += timer.seconds();
     }

@@ -100,8 +100,9 @@ TEST(Bake, AnySplitOfTheTexelsGivesTheSameBits) {
     const auto by_page = triangles_by_page(scene, geometry, charts, atlas);
     const TexelBuffer texels = rasterize_page(scene, geometry, charts, atlas, 0, by_page[0], context).value();
     PathOptions path;
-    path.samples = 64;
+    path.samples = 96;
     path.bounces = 4;
+    path.guided = true;
 
     const auto hash_of = [&](const RadianceSums& sums) {
         Hasher hasher;

@@ -190,6 +190,7 @@ Json options_json(const ManifestInput& in) {
             {"two_sided", options.two_sided},
             {"ao_distance", options.ao_distance},
             {"integrator", kIntegrators[static_cast<std::size_t>(options.integrator)]},
+            {"guide", options.guide},
             {"stop", options.stop == StopRule::flux ? "flux" : "fixed"},
             {"sky", sky_json(options.sky, in.sky_hash, in.folder)},
             {"sun", sun_json(options.sun)},

@@ -23,6 +23,11 @@ struct GatherHemisphere {
     static Vec3 sample(Vec2 u) { return direction_from_z((std::sqrt(1.0f + 8.0f * u.x) - 1.0f) * 0.5f, u.y); }
     static float pdf(float cosine) { return cosine >= 0.0f ? (0.5f + cosine) * kInvTwoPi : 0.0f; }
     static float inverse_u(float z) { return 0.5f * (z + z * z); }
+    // Where in the unit square a direction comes from.
+    static Vec2 inverse(Vec3 local) {
+        const auto turn = static_cast<float>(arctangent2(local.y, local.x)) * kInvTwoPi;
+        return {inverse_u(std::clamp(local.z, 0.0f, 1.0f)), turn < 0.0f ? turn + 1.0f : turn};
+    }
 };
 
 struct CosineHemisphere {

@@ -27,6 +27,17 @@ TEST(GatherHemisphere, TheTestAboveNoticesAnotherDensity) {
         [](Vec3 d) { return GatherHemisphere::pdf(d.z); }));
 }
 
+TEST(GatherHemisphere, TheInverseUndoesIt) {
+    test::Random random(3);
+    for (int i = 0; i < 10000; ++i) {
+        const Vec2 u = random.pair(), back = GatherHemisphere::inverse(GatherHemisphere::sample(u));
+        ASSERT_NEAR(back.x, u.x, 2e-6f);
+        // The azimuth is ill conditioned near the pole (u.x = 1), and round.
+        const float turn = std::fabs(back.y - u.y);
+        ASSERT_LE(std::min(turn, 1.0f - turn) * std::sqrt(1.0f - u.x), 2e-6f);
+    }
+}
+
 TEST(CosineHemisphere, SamplesFollowTheDensity) {
     test::DirectionTest chi2;
     chi2.significance = kSignificance;

@@ -15,7 +15,7 @@ namespace {
 // What reaches a cell by itself, and its links.
 class CellSink {
 public:
-    static constexpr bool kFromCell = true, kSunsKnown = true;
+    static constexpr bool kFromCell = true, kSunsKnown = true, kMayBeGuided = false;
 
     CellSink(std::span<CellLink> links, CellGather& gather) : links_(links), gather_(gather) {}
 
@@ -25,7 +25,7 @@ public:
         gather_.traced += static_cast<std::uint32_t>(starts.size());
         gather_.count += static_cast<std::uint32_t>(starts.size());
     }
-    void void_path(std::uint32_t) { --gather_.count; }
+    void void_path(std::uint32_t, float) { --gather_.count; }
     void free_path(std::uint32_t, Vec3, float, float, bool) {}
     void light(std::uint32_t lane, Layer, Vec3 direction, Vec3 value) {
         sum_ += value * (std::max(0.0f, dot(direction, starts_[lane].normal)) * kInvPi);
@@ -77,7 +77,7 @@ void PathIntegrator::gather_cell(const GatherSite& site, bool back, Workspace& w
         }
         const auto starts = std::span<const PathStart>(w.starts).first(lanes);
         sink.begin(starts, base);
-        trace_paths(starts, w, sink);
+        trace_paths(starts, w, sink, nullptr);
     }
     sink.end();
 }

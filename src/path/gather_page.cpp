@@ -4,32 +4,45 @@
 #include "base/cancelled.h"
 #include "base/check.h"
 #include "base/parallel.h"
-#include "base/try.h"
 #include "path/path_integrator.h"
+#include "path/texel_blocks.h"
 
 namespace lumel {
 
-void RadianceSums::reserve(std::size_t texels) {
-    layers.reserve(texels);
-    variance.reserve(texels);
-    half_difference.reserve(texels);
-    sky_visibility.reserve(texels);
-    ambient_occlusion.reserve(texels);
-    bent_normal.reserve(texels);
-    count.reserve(texels);
-    traced.reserve(texels);
+namespace {
+
+// Where the texels of a block gather.
+class BlockSites {
+public:
+    void read(std::span<const std::uint32_t> block, const TexelBuffer& texels, const Transport& transport,
+              const ChartSet& charts, const Atlas& atlas) {
+        LUMEL_CHECK(block.size() <= points_.size(), block.size());
+        sites_.clear();
+        for (std::size_t k = 0; k < block.size(); ++k) {
+            const std::uint32_t i = block[k];
+            const std::uint32_t n =
+                sample_points(texels, i, transport.scene, transport.geometry, charts, atlas, points_[k]);
+            const std::uint64_t id =
+                (std::uint64_t{texels.page} << 32) | (std::uint64_t{texels.y[i]} << 16) | texels.x[i];
+            sites_.push_back({std::span(points_[k]).first(n), id, texels.world_size[i]});
+        }
+    }
+    [[nodiscard]] std::span<const GatherSite> sites() const { return sites_; }
+
+private:
+    std::array<std::array<SamplePoint, kSamplesPerTexel>, kMostTexelsTogether> points_;
+    std::vector<GatherSite> sites_;
+};
+
+// Blocks are gathered whole: what was not asked for stays zero.
+void clear_outside(RadianceSums& sums, std::size_t begin, std::size_t end) {
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+        if (i == begin) i = end;
+        if (i < sums.size()) sums.clear(i);
+    }
 }
 
-void RadianceSums::resize(std::size_t texels) {
-    layers.resize(texels);
-    variance.resize(texels);
-    half_difference.resize(texels);
-    sky_visibility.resize(texels);
-    ambient_occlusion.resize(texels);
-    bent_normal.resize(texels);
-    count.resize(texels);
-    traced.resize(texels);
-}
+}  // namespace
 
 Result<RadianceSums> gather_page(const TexelBuffer& texels, const ChartSet& charts, const Atlas& atlas,
                                  const Transport& transport, const PathOptions& options, std::size_t first,
@@ -42,24 +55,19 @@ Result<RadianceSums> gather_page(const TexelBuffer& texels, const ChartSet& char
     std::vector<PathIntegrator::WorkspacePtr> workspaces(context.threads());
     for (auto& workspace : workspaces) workspace = integrator.make_workspace();
 
-    // Small enough that a cancelled bake stops within a fraction of a second.
-    constexpr std::size_t kTexelsPerChunk = 16;
+    const TexelBlocks blocks = make_texel_blocks(texels, first, first + count);
+    std::vector<BlockSites> sites(context.threads());
     const std::uint64_t rays_before = transport.tracer.statistics().rays;
     const bool done = parallel_for(
-        context, count, kTexelsPerChunk,
+        context, blocks.size(), 1,
         [&](const ChunkRange& range) {
-            std::array<SamplePoint, kSamplesPerTexel> points;
-            for (std::size_t i = first + range.begin; i < first + range.end; ++i) {
-                const std::uint32_t n =
-                    sample_points(texels, i, transport.scene, transport.geometry, charts, atlas, points);
-                const std::uint64_t id =
-                    (std::uint64_t{texels.page} << 32) | (std::uint64_t{texels.y[i]} << 16) | texels.x[i];
-                integrator.gather_texel({std::span(points).first(n), id, texels.world_size[i]},
-                                        *workspaces[range.worker], sums, i, context);
-            }
+            const auto block = blocks.block(range.begin);
+            sites[range.worker].read(block, texels, transport, charts, atlas);
+            integrator.gather_texels(sites[range.worker].sites(), block, *workspaces[range.worker], sums, context);
         },
         "trace", [&] { return transport.tracer.statistics().rays - rays_before; });
     if (!done || context.cancelled()) return cancelled_error();
+    clear_outside(sums, first, first + count);
     return sums;
 }
 

@@ -1,6 +1,5 @@
-// Based on: O'Donnell 2018, "Precomputed Global Illumination in Frostbite" (sample points per texel, validity by back
-// faces, the stop rule). Differs from it: Owen-scrambled Sobol points instead of rotated Halton; vertex normals; area
-// lights and sky are combined by MIS; void paths leave the count too. The paths themselves: trace_paths.h.
+// Where paths start, and the irradiance that single ones bring. The texels: gather_texels.cpp; the paths themselves:
+// trace_paths.h.
 #include "path/path_integrator.h"
 
 #include <algorithm>
@@ -8,9 +7,7 @@
 
 #include "base/check.h"
 #include "math/sampler.h"
-#include "path/enclosed_points.h"
 #include "path/path_workspace.h"
-#include "path/texel_sink.h"
 #include "path/trace_paths.h"
 #include "texel/ray_offset.h"
 
@@ -114,7 +111,7 @@ namespace {
 // Only the irradiance of each path, for pictures.
 class IrradianceSink {
 public:
-    static constexpr bool kFromCell = false, kSunsKnown = false;
+    static constexpr bool kFromCell = false, kSunsKnown = false, kMayBeGuided = false;
 
     IrradianceSink(const PathOptions& options, std::span<const PathStart> starts, std::span<Vec3> irradiance,
                    std::span<std::uint8_t> valid)
@@ -122,7 +119,7 @@ public:
         std::fill(irradiance.begin(), irradiance.end(), Vec3{});
         std::fill(valid.begin(), valid.end(), std::uint8_t{1});
     }
-    void void_path(std::uint32_t lane) { valid_[lane] = 0; }
+    void void_path(std::uint32_t lane, float) { valid_[lane] = 0; }
     void free_path(std::uint32_t, Vec3, float, float, bool) {}
     void light(std::uint32_t lane, Layer of, Vec3 direction, Vec3 value) {
         const auto layer = static_cast<std::size_t>(of);
@@ -143,60 +140,7 @@ private:
 void PathIntegrator::gather_irradiance(std::span<const PathStart> starts, Workspace& workspace,
                                        std::span<Vec3> irradiance, std::span<std::uint8_t> valid) const {
     IrradianceSink sink(options_, starts, irradiance, valid);
-    trace_paths(starts, workspace, sink);
-}
-
-void PathIntegrator::gather_texel(const GatherSite& site, Workspace& w, RadianceSums& out, std::size_t index,
-                                  const Context& context) const {
-    const std::span<const SamplePoint> points = site.points;
-    LUMEL_CHECK(!points.empty() && points.size() <= kSamplesPerTexel, points.size());
-    // Even and odd samples are each a point set of its own: what they differ by tells the noise (pool_variance()).
-    const std::uint32_t key = sampler_key(options_.seed, site.id);
-    const std::array<std::uint32_t, 2> half_keys{key, mix32(key)};
-    const bool both_sides =
-        options_.two_sided && (transport_.geometry.triangles[points[0].triangle].flags & kDoubleSided) != 0;
-
-    std::size_t n = points.size();
-    std::fill(w.sides.begin(), w.sides.end(), std::uint8_t{0});
-    surface_starts(points, std::span(w.sides).first(n), w, w.surfaces);
-    if (both_sides) {
-        std::fill(w.sides.begin(), w.sides.end(), std::uint8_t{1});
-        surface_starts(points, std::span(w.sides).first(n), w, w.back_surfaces);
-    } else if (any_double_sided_) {
-        const auto starts = std::span(w.surfaces).first(n);
-        n = keep_open_points(starts, enclosed_points(starts, kEnclosureReach * site.texel_size, mix32(key),
-                                                     transport_.tracer, transport_.geometry, w.rays, w.hits));
-    }
-
-    find_sunlit(std::span(w.surfaces).first(n), false, w);
-    if (both_sides) find_sunlit(std::span(w.back_surfaces).first(n), false, w);
-    TexelSink sink(options_);
-    const bool may_stop = options_.stop == StopRule::flux;
-    const std::uint32_t step = may_stop ? (options_.samples + 9) / 10 : options_.samples;
-    std::uint32_t next_check = step;
-    for (std::uint32_t base = 0, lanes = 0; base < options_.samples; base += lanes) {
-        if (context.cancelled()) return;
-        lanes = std::min({static_cast<std::uint32_t>(kWavefrontLanes), next_check - base, options_.samples - base});
-        for (std::uint32_t lane = 0; lane < lanes; ++lane) {
-            const std::uint32_t sample = base + lane;
-            const std::uint32_t half = sample & 1u, index = sample / 2;
-            // Both sides take turns in pairs, so that each side meets every sample point.
-            const bool back = both_sides && ((index ^ (index / kSamplesPerTexel)) & 1u) != 0;
-            // Where there are fewer samples than points, the halves start from different ones.
-            const std::size_t point = point_of(index + half * static_cast<std::uint32_t>(n / 2), key, n);
-            const SurfaceStart& start = (back ? w.back_surfaces : w.surfaces)[point];
-            w.starts[lane] = {start.origin, start.normal, half_keys[half], index, start.skip, start.sunlit};
-        }
-        const auto starts = std::span<const PathStart>(w.starts).first(lanes);
-        sink.begin(starts, both_sides ? 2.0f : 1.0f);
-        trace_paths(starts, w, sink);
-        sink.end();
-        if (base + lanes == next_check) {
-            if (may_stop && sink.converged(options_.relative_error_of_mean)) break;
-            next_check += step;
-        }
-    }
-    sink.store(out, index);
+    trace_paths(starts, workspace, sink, nullptr);
 }
 
 }  // namespace lumel

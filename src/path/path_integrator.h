@@ -24,8 +24,11 @@
 
 namespace lumel {
 
+class HemisphereGuide;
+
 inline constexpr std::size_t kWavefrontLanes = 256;
 inline constexpr std::size_t kMaxPointSuns = 32;
+inline constexpr std::size_t kMostTexelsTogether = 64;
 
 struct PathOptions {
     std::uint32_t samples = 512;
@@ -33,6 +36,7 @@ struct PathOptions {
     std::uint64_t seed = 1;
     float ao_distance = 1.0f;  // metres
     bool two_sided = false;
+    bool guided = false;  // first rays follow what texels nearby have seen (path/hemisphere_guide.h)
     StopRule stop = StopRule::fixed;
     double relative_error_of_mean = 0.0;  // StopRule::flux: error / z(confidence)
     // Artist's factors of the layers, and which of them the total (its variance, pictures) sums.
@@ -90,10 +94,10 @@ public:
     using WorkspacePtr = std::unique_ptr<Workspace, WorkspaceDeleter>;
     [[nodiscard]] WorkspacePtr make_workspace() const;
 
-    // Gathers all samples of one texel into out[index]. Stops early, leaving the texel untouched, if `context` is
-    // cancelled.
-    void gather_texel(const GatherSite& site, Workspace& workspace, RadianceSums& out, std::size_t index,
-                      const Context& context) const;
+    // Gathers all samples of texels that lie together (at most kMostTexelsTogether), and share what guides their paths,
+    // into out[indices]. Stops early, leaving the texels untouched, if `context` is cancelled.
+    void gather_texels(std::span<const GatherSite> sites, std::span<const std::uint32_t> indices, Workspace& workspace,
+                       RadianceSums& out, const Context& context) const;
 
     // What paths from a cell bring to it by themselves, and one link for each that ends at another cell. As many paths
     // as there are links; their light is what a bounce sees of it.
@@ -110,10 +114,17 @@ public:
                         Workspace& workspace, std::span<SurfaceStart> out) const;
 
 private:
+    struct TexelState;
+    void begin_texel(const GatherSite& site, Workspace& workspace, TexelState& texel) const;
+    // Samples first to last - 1 of a texel.
+    void gather_samples(std::uint32_t first, std::uint32_t last, Workspace& workspace, TexelState& texel) const;
+    // By Frostbite's rule.
+    void gather_until_converged(Workspace& workspace, TexelState& texel) const;
     // Fills in `sunlit`, where knows_point_suns_.
     void find_sunlit(std::span<SurfaceStart> starts, bool bounced, Workspace& workspace) const;
     template <class Sink>
-    void trace_paths(std::span<const PathStart> starts, Workspace& workspace, Sink& sink) const;
+    void trace_paths(std::span<const PathStart> starts, Workspace& workspace, Sink& sink,
+                     const HemisphereGuide* guide) const;
 
     Transport transport_;
     PathOptions options_;

@@ -183,7 +183,7 @@ TEST(TexelSink, MeanAndErrorAreThoseOfARatio) {
     const auto pi = static_cast<float>(M_PI);
     for (std::uint32_t lane = 0; lane < 3; ++lane)
         sink.light(lane, Layer::sky, up, Vec3{1, 1, 1} * (pi * static_cast<float>(lane + 1)));
-    sink.void_path(3);
+    sink.void_path(3, 1.0f);
     sink.light(3, Layer::sky, up, Vec3{1, 1, 1} * (pi * 2.0f));
     sink.end();
     RadianceSums sums;

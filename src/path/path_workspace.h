@@ -3,11 +3,25 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "path/hemisphere_guide.h"
 #include "path/path_integrator.h"
+#include "path/texel_sink.h"
 
 namespace lumel {
+
+// A texel whose paths are being traced.
+struct PathIntegrator::TexelState {
+    explicit TexelState(const PathOptions& options) : sink(options) {}
+
+    std::array<SurfaceStart, kSamplesPerTexel> surfaces, back_surfaces;
+    std::size_t points = 0;  // of them in use
+    std::array<std::uint32_t, 2> half_keys{};
+    bool both_sides = false;
+    TexelSink sink;
+};
 
 // One lane is one path. Arrays are indexed by lane unless they say otherwise.
 class PathIntegrator::Workspace {
@@ -34,8 +48,10 @@ public:
     std::array<Vec3, kWavefrontLanes> bounced;  // light gathered after the first hit, radiance of the first ray
     std::array<Vec3, kWavefrontLanes> first_direction;
     std::array<float, kWavefrontLanes> first_pdf;
-    std::array<std::uint32_t, kWavefrontLanes> lanes;  // of the paths still alive
-    std::array<Ray, kWavefrontLanes> rays;             // by position in `lanes`
+    std::array<HemisphereGuide::Draw, kWavefrontLanes> first_draw;
+    std::array<float, kWavefrontLanes> first_radiance;  // luminance along the first ray, MIS included
+    std::array<std::uint32_t, kWavefrontLanes> lanes;   // of the paths still alive
+    std::array<Ray, kWavefrontLanes> rays;              // by position in `lanes`
     std::array<Hit, kWavefrontLanes> hits;
     std::array<AlbedoLookup, kWavefrontLanes> albedo;  // at `hits`
 
@@ -44,9 +60,12 @@ public:
     std::vector<std::uint8_t> blocked;
 
     std::array<PathStart, kWavefrontLanes> starts;
-    std::array<SurfaceStart, kSamplesPerTexel> surfaces;
-    std::array<SurfaceStart, kSamplesPerTexel> back_surfaces;
+    std::array<SurfaceStart, kSamplesPerTexel> surfaces;  // of a cell
     std::array<std::uint8_t, kSamplesPerTexel> sides;
+
+    std::vector<TexelState> texels;  // those that are gathered together
+    GuideStatistics guide_statistics;
+    std::optional<HemisphereGuide> guide;
 };
 
 // Which of n points a sample starts from. Counts that do not fill a whole round of the points leave out others in each

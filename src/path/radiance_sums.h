@@ -37,6 +37,7 @@ struct RadianceSums {
     std::vector<std::uint32_t> traced;     // samples traced
     void resize(std::size_t texels);
     void reserve(std::size_t texels);
+    void clear(std::size_t texel);
     [[nodiscard]] std::size_t size() const { return count.size(); }
     // A texel is invalid when more than half of its gather rays met back faces, or none was traced.
     [[nodiscard]] bool valid(std::size_t texel) const { return traced[texel] > 0 && 2 * count[texel] > traced[texel]; }

@@ -18,22 +18,25 @@ namespace lumel {
 // Told by the integrator of everything that happens to a texel's paths, wavefront by wavefront.
 class TexelSink {
 public:
-    static constexpr bool kFromCell = false, kSunsKnown = true;
+    static constexpr bool kFromCell = false, kSunsKnown = true, kMayBeGuided = true;
 
     explicit TexelSink(const PathOptions& options)
         : ao_distance_(options.ao_distance), scale_(options.layer_scale), included_(options.included) {}
 
-    void begin(std::span<const PathStart> starts, float sh_scale) {
+    // `weight` of each of these paths in all means: paths that are better guided count for more.
+    void begin(std::span<const PathStart> starts, float sh_scale, double weight = 1.0) {
         starts_ = starts;
         sh_scale_ = sh_scale;
+        weight_ = weight;
         wavefront_ = {};
         for (std::size_t lane = 0; lane < starts.size(); ++lane) {
             sample_[lane] = {};
-            void_[lane] = false;
+            void_[lane] = 0.0f;
         }
     }
 
-    void void_path(std::uint32_t lane) { void_[lane] = true; }
+    // `weight`: density of its first ray without a guide over the density it was drawn with.
+    void void_path(std::uint32_t lane, float weight) { void_[lane] = weight; }
 
     void light(std::uint32_t lane, Layer of, Vec3 direction, Vec3 value) {
         const auto layer = static_cast<std::size_t>(of);
@@ -50,7 +53,7 @@ public:
 
     void free_path(std::uint32_t lane, Vec3 direction, float pdf, float distance, bool sky) {
         const float cosine = std::max(0.0f, dot(direction, starts_[lane].normal));
-        const double weight = static_cast<double>(cosine * kInvPi / pdf);
+        const double weight = weight_ * static_cast<double>(cosine * kInvPi / pdf);
         if (sky) sky_visibility_ += weight;
         if (distance <= ao_distance_) return;
         open_ += weight;
@@ -61,31 +64,39 @@ public:
         for (std::size_t layer = 0; layer < kLayerCount; ++layer)
             for (std::size_t c = 0; c < 3; ++c) {
                 for (std::size_t i = 0; i < kShCoefficients; ++i)
-                    layers_[layer].sh[c][i] += static_cast<double>(wavefront_[layer].sh[c][i] * sh_scale_);
-                layers_[layer].irradiance[c] += static_cast<double>(wavefront_[layer].irradiance[c]);
+                    layers_[layer].sh[c][i] += weight_ * static_cast<double>(wavefront_[layer].sh[c][i] * sh_scale_);
+                layers_[layer].irradiance[c] += weight_ * static_cast<double>(wavefront_[layer].irradiance[c]);
             }
         for (std::size_t lane = 0; lane < starts_.size(); ++lane) {
-            if (!void_[lane]) ++count_;
+            // Without a guide 1 or 0. With one the share of void paths is estimated by their weights.
+            const double valid = 1.0 - static_cast<double>(void_[lane]);
+            valid_ += valid;
+            const double counts = weight_ * valid;
+            count_ += counts;
+            squared_counts_ += counts * counts;
             Half& half = halves_[traced_ & 1u];
-            if (!void_[lane]) ++half.count;
-            for (std::size_t c = 0; c < 3; ++c) half.sum[c] += static_cast<double>(sample_[lane][c]);
-            for (std::size_t c = 0; c < 3; ++c) channels_[c].add(static_cast<double>(sample_[lane][c]), !void_[lane]);
-            luminance_.add(static_cast<double>(luminance(sample_[lane])), !void_[lane]);
+            half.count += counts;
+            for (std::size_t c = 0; c < 3; ++c) {
+                const double value = weight_ * static_cast<double>(sample_[lane][c]);
+                half.sum[c] += value;
+                channels_[c].add(value, counts);
+            }
+            luminance_.add(weight_ * static_cast<double>(luminance(sample_[lane])), counts);
             ++traced_;
         }
     }
 
     // Frostbite's rule on the texel's own luminance.
     [[nodiscard]] bool converged(double relative_error) const {
-        if (count_ < 2) return false;
-        return std::sqrt(luminance_.variance(count_, traced_)) <= relative_error * luminance_.mean(count_);
+        if (valid_ < 2.0) return false;
+        return std::sqrt(luminance_.variance(counts())) <= relative_error * luminance_.mean(count_);
     }
 
     void store(RadianceSums& out, std::size_t index) const {
         out.traced[index] = traced_;
-        out.count[index] = count_;
-        if (count_ == 0) return;
-        const double inverse = 1.0 / static_cast<double>(count_);
+        out.count[index] = valid_ > 0.0 ? static_cast<std::uint32_t>(valid_ + 0.5) : 0;
+        if (out.count[index] == 0 || count_ <= 0.0) return;
+        const double inverse = 1.0 / count_;
         for (std::size_t layer = 0; layer < kLayerCount; ++layer) {
             LayerMoments& moments = out.layers[index][layer];
             for (std::size_t c = 0; c < 3; ++c) {
@@ -95,7 +106,7 @@ public:
             }
         }
         for (std::size_t c = 0; c < 3; ++c) {
-            out.variance[index][c] = static_cast<float>(channels_[c].variance(count_, traced_));
+            out.variance[index][c] = static_cast<float>(channels_[c].variance(counts()));
             out.half_difference[index][c] = half_difference(c, out.variance[index][c]);
             out.bent_normal[index][c] = static_cast<float>(bent_[c] * inverse);
         }
@@ -110,21 +121,28 @@ private:
         std::array<Number, 3> irradiance{};
     };
 
-    // Moments of samples x_i over all paths, of which those with v_i = 1 count: the mean is sum x / sum v.
+    // Of the v_i by which paths count: their sum, that of their squares; how many paths were valid, how many traced.
+    struct Counts {
+        double sum, squares, valid, traced;
+    };
+    [[nodiscard]] Counts counts() const { return {count_, squared_counts_, valid_, static_cast<double>(traced_)}; }
+
+    // Moments of samples x_i over all paths, which count as v_i (a void one as nothing): the mean is sum x / sum v.
+    // Both hold a path's weight.
     class Moments {
     public:
-        void add(double x, bool counts) {
+        void add(double x, double counts) {
             sum_ += x;
             squares_ += x * x;
-            if (counts) counted_ += x;
+            counted_ += x * counts;
         }
-        [[nodiscard]] double mean(std::uint32_t count) const { return sum_ / static_cast<double>(count); }
+        [[nodiscard]] double mean(double count) const { return sum_ / count; }
         // Of that mean, by the residuals x - mean v (Cochran 1977, ch. 6); without void paths the familiar one.
-        [[nodiscard]] double variance(std::uint32_t count, std::uint32_t traced) const {
-            if (count < 2) return 0.0;
-            const double n = static_cast<double>(count), m = mean(count);
-            const double residuals = std::max(0.0, squares_ - 2.0 * m * counted_ + m * m * n);
-            return residuals / (n * n) * (static_cast<double>(traced) / static_cast<double>(traced - 1));
+        [[nodiscard]] double variance(const Counts& v) const {
+            if (v.valid < 2.0) return 0.0;
+            const double m = mean(v.sum);
+            const double residuals = std::max(0.0, squares_ - 2.0 * m * counted_ + m * m * v.squares);
+            return residuals / (v.sum * v.sum) * (v.traced / (v.traced - 1.0));
         }
 
     private:
@@ -133,14 +151,14 @@ private:
 
     // Where a half has no sample that counts it is unknown: what independent samples of that variance would give.
     [[nodiscard]] float half_difference(std::size_t c, float variance) const {
-        if (halves_[0].count == 0 || halves_[1].count == 0) return 2.0f * std::sqrt(variance);
+        if (halves_[0].count <= 0.0 || halves_[1].count <= 0.0) return 2.0f * std::sqrt(variance);
         return static_cast<float>(halves_[0].mean(c) - halves_[1].mean(c));
     }
 
     // Every other sample, from the first or the second on.
     struct Half {
         std::array<double, 3> sum{};
-        std::uint32_t count = 0;
+        double count = 0.0;
         [[nodiscard]] double mean(std::size_t c) const { return sum[c] / count; }
     };
 
@@ -150,7 +168,7 @@ private:
     float sh_scale_ = 1.0f;
     std::span<const PathStart> starts_;
     std::array<Vec3, kWavefrontLanes> sample_{};
-    std::array<bool, kWavefrontLanes> void_{};
+    std::array<float, kWavefrontLanes> void_{};
     std::array<LayerSums<float>, kLayerCount> wavefront_{};
     std::array<LayerSums<double>, kLayerCount> layers_{};
     std::array<Moments, 3> channels_{};
@@ -158,7 +176,8 @@ private:
     std::array<Half, 2> halves_{};
     std::array<double, 3> bent_{};
     double sky_visibility_ = 0.0, open_ = 0.0;
-    std::uint32_t count_ = 0, traced_ = 0;
+    double weight_ = 1.0, count_ = 0.0, squared_counts_ = 0.0, valid_ = 0.0;
+    std::uint32_t traced_ = 0;
 };
 
 }  // namespace lumel

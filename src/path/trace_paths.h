@@ -82,8 +82,8 @@ public:
         workspace_.shadow_rays.clear();
     }
 
-    // `pdf_of(cosine)`: density of the direction sampling at this vertex, for MIS. `value_of(cosine)`: what multiplies
-    // the light sample's weight. `suns_known`: suns without size are left out (SurfaceStart::sunlit).
+    // `pdf_of(direction, cosine)`: density of the direction sampling at this vertex, for MIS. `value_of(cosine)`: what
+    // multiplies the light sample's weight. `suns_known`: suns without size are left out (SurfaceStart::sunlit).
     template <class PdfOf, class ValueOf>
     void sample_all(std::uint32_t lane, const PathStart& start, std::uint32_t first_pair, bool bounced, bool suns_known,
                     PdfOf&& pdf_of, ValueOf&& value_of) {
@@ -123,7 +123,7 @@ private:
         const float cosine = dot(sample.direction, vertex.normal);
         if (sample.distance <= 0.0f || cosine <= 0.0f || is_black(sample.weight)) return;
         if (vertex.face_normal != Vec3{} && dot(sample.direction, vertex.face_normal) <= 0.0f) return;
-        const float mis = sample.pdf > 0.0f ? power_heuristic(sample.pdf, pdf_of(cosine)) : 1.0f;
+        const float mis = sample.pdf > 0.0f ? power_heuristic(sample.pdf, pdf_of(sample.direction, cosine)) : 1.0f;
         workspace_.pending.push_back({lane, layer, sample.direction, value_of(cosine) * sample.weight * mis});
         Ray ray;
         ray.origin = vertex.position;
@@ -140,12 +140,14 @@ private:
 
 }  // namespace path_detail
 
-// Sink: void_path(lane); free_path(lane, direction, pdf, distance or infinity, sky);
+// Sink: void_path(lane, weight); free_path(lane, direction, pdf, distance or infinity, sky);
 // light(lane, layer, direction, radiance over density). kSunsKnown: PathStart::sunlit is filled in. kFromCell: the
 // start is a cell's, whose light is what a bounce sees of it, and paths that end at a cell are links: link(lane,
-// direction, pdf, cell, share of its irradiance).
+// direction, pdf, cell, share of its irradiance). kMayBeGuided: first rays are drawn by `guide`, where there is one,
+// and Workspace::first_radiance is filled in.
 template <class Sink>
-void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w, Sink& sink) const {
+void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w, Sink& sink,
+                                 const HemisphereGuide* guide) const {
     using namespace path_detail;
     LUMEL_CHECK(starts.size() <= kWavefrontLanes, starts.size());
     const LightSet& lights = transport_.lights;
@@ -156,14 +158,18 @@ void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w
     const std::size_t count = starts.size();
     for (std::uint32_t lane = 0; lane < count; ++lane) {
         const Sampler sampler(starts[lane].key, starts[lane].index);
-        const Vec3 local = GatherHemisphere::sample(sampler.pair(kDirectionPair));
+        HemisphereGuide::Draw draw{sampler.pair(kDirectionPair), 1.0f};
+        if (guide) draw = guide->draw(draw.point);
+        const Vec3 local = GatherHemisphere::sample(draw.point);
+        w.first_draw[lane] = draw;
+        w.first_radiance[lane] = 0.0f;
         auto& vertex = w.vertex[lane];
         vertex.position = starts[lane].origin;
         vertex.normal = starts[lane].normal;
         vertex.face_normal = {};
         vertex.triangle = starts[lane].skip;
         vertex.direction = Frame(vertex.normal).to_world(local);
-        vertex.direction_pdf = GatherHemisphere::pdf(local.z);
+        vertex.direction_pdf = GatherHemisphere::pdf(local.z) * draw.density;
         w.first_direction[lane] = vertex.direction;
         w.first_pdf[lane] = vertex.direction_pdf;
         w.throughput[lane] = {1, 1, 1};
@@ -182,7 +188,7 @@ void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w
     for (std::uint32_t lane = 0; lane < count; ++lane) {
         const Hit& hit = w.hits[lane];
         if (!hit.missed() && hit.back_face && !(geometry.triangles[hit.triangle].flags & kDoubleSided)) {
-            sink.void_path(lane);
+            sink.void_path(lane, 1.0f / w.first_draw[lane].density);
         } else {
             w.hits[alive] = hit;
             w.lanes[alive++] = lane;
@@ -200,7 +206,12 @@ void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w
             }
             queue.sample_all(
                 lane, starts[lane], 0, Sink::kFromCell, suns_known,
-                [](float cosine) { return GatherHemisphere::pdf(cosine); },
+                [&](Vec3 direction, float cosine) {
+                    const float pdf = GatherHemisphere::pdf(cosine);
+                    if (!guide) return pdf;
+                    return pdf *
+                           guide->density(GatherHemisphere::inverse(Frame(starts[lane].normal).to_local(direction)));
+                },
                 [](float) {
                     return Vec3{1, 1, 1};
                 });
@@ -216,9 +227,10 @@ void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w
             if (is_black(light.radiance)) return;
             const auto& vertex = w.vertex[lane];
             const float mis = light.pdf > 0.0f ? power_heuristic(vertex.direction_pdf, light.pdf) : 1.0f;
-            if (first)
+            if (first) {
                 sink.light(lane, layer, vertex.direction, light.radiance * (mis / vertex.direction_pdf));
-            else
+                if constexpr (Sink::kMayBeGuided) w.first_radiance[lane] += luminance(light.radiance) * mis;
+            } else
                 w.bounced[lane] += w.throughput[lane] * light.radiance * mis;
         };
 
@@ -284,7 +296,8 @@ void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w
             const std::uint32_t lane = w.lanes[i];
             const Vec3 scale = w.throughput[lane] * w.vertex[lane].reflectance;
             queue.sample_all(
-                lane, starts[lane], first_pair, true, false, [](float cosine) { return CosineHemisphere::pdf(cosine); },
+                lane, starts[lane], first_pair, true, false,
+                [](Vec3, float cosine) { return CosineHemisphere::pdf(cosine); },
                 [&](float cosine) { return scale * cosine; });
         }
         queue.resolve([&](const auto& event) { w.bounced[event.lane] += event.value; });
@@ -318,9 +331,11 @@ void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w
         transport_.tracer.closest(std::span(w.rays).first(alive), std::span(w.hits).first(alive));
     }
 
-    for (std::uint32_t lane = 0; lane < count; ++lane)
-        if (!is_black(w.bounced[lane]))
-            sink.light(lane, Layer::indirect, w.first_direction[lane], w.bounced[lane] * (1.0f / w.first_pdf[lane]));
+    for (std::uint32_t lane = 0; lane < count; ++lane) {
+        if (is_black(w.bounced[lane])) continue;
+        sink.light(lane, Layer::indirect, w.first_direction[lane], w.bounced[lane] * (1.0f / w.first_pdf[lane]));
+        if constexpr (Sink::kMayBeGuided) w.first_radiance[lane] += luminance(w.bounced[lane]);
+    }
 }
 
 }  // namespace lumel

@@ -1,0 +1,109 @@
+// Based on: O'Donnell 2018, "Precomputed Global Illumination in Frostbite" (sample points per texel, validity by back
+// faces, the stop rule). Differs from it: Owen-scrambled Sobol points instead of rotated Halton; vertex normals; area
+// lights and sky are combined by MIS; void paths leave the count too; first rays may be guided.
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include "base/check.h"
+#include "math/sampler.h"
+#include "path/enclosed_points.h"
+#include "path/path_integrator.h"
+#include "path/path_workspace.h"
+#include "path/trace_paths.h"
+
+namespace lumel {
+namespace {
+
+constexpr std::uint32_t kFirstRound = 8, kRoundFactor = 4;
+constexpr std::uint32_t kFewestSamplesForGuide = 64;
+
+}  // namespace
+
+void PathIntegrator::begin_texel(const GatherSite& site, Workspace& w, TexelState& texel) const {
+    LUMEL_CHECK(!site.points.empty() && site.points.size() <= kSamplesPerTexel, site.points.size());
+    // Even and odd samples are each a point set of its own: what they differ by tells the noise (pool_variance()).
+    const std::uint32_t key = sampler_key(options_.seed, site.id);
+    texel.half_keys = {key, mix32(key)};
+    texel.both_sides =
+        options_.two_sided && (transport_.geometry.triangles[site.points[0].triangle].flags & kDoubleSided) != 0;
+    std::size_t n = site.points.size();
+    std::fill(w.sides.begin(), w.sides.end(), std::uint8_t{0});
+    surface_starts(site.points, std::span(w.sides).first(n), w, texel.surfaces);
+    if (texel.both_sides) {
+        std::fill(w.sides.begin(), w.sides.end(), std::uint8_t{1});
+        surface_starts(site.points, std::span(w.sides).first(n), w, texel.back_surfaces);
+    } else if (any_double_sided_) {
+        const auto starts = std::span(texel.surfaces).first(n);
+        n = keep_open_points(starts, enclosed_points(starts, kEnclosureReach * site.texel_size, mix32(key),
+                                                     transport_.tracer, transport_.geometry, w.rays, w.hits));
+    }
+    texel.points = n;
+    find_sunlit(std::span(texel.surfaces).first(n), false, w);
+    if (texel.both_sides) find_sunlit(std::span(texel.back_surfaces).first(n), false, w);
+}
+
+void PathIntegrator::gather_samples(std::uint32_t first, std::uint32_t last, Workspace& w, TexelState& texel) const {
+    const HemisphereGuide* const guide = w.guide ? &*w.guide : nullptr;
+    for (std::uint32_t base = first, lanes = 0; base < last; base += lanes) {
+        lanes = std::min(static_cast<std::uint32_t>(kWavefrontLanes), last - base);
+        for (std::uint32_t lane = 0; lane < lanes; ++lane) {
+            const std::uint32_t sample = base + lane;
+            const std::uint32_t half = sample & 1u, index = sample / 2;
+            // Both sides take turns in pairs, so that each side meets every sample point.
+            const bool back = texel.both_sides && ((index ^ (index / kSamplesPerTexel)) & 1u) != 0;
+            // Where there are fewer samples than points, the halves start from different ones.
+            const std::size_t point =
+                point_of(index + half * static_cast<std::uint32_t>(texel.points / 2), texel.half_keys[0], texel.points);
+            const SurfaceStart& start = (back ? texel.back_surfaces : texel.surfaces)[point];
+            w.starts[lane] = {start.origin, start.normal, texel.half_keys[half], index, start.skip, start.sunlit};
+        }
+        const auto starts = std::span<const PathStart>(w.starts).first(lanes);
+        texel.sink.begin(starts, texel.both_sides ? 2.0f : 1.0f, guide ? guide->weight() : 1.0);
+        trace_paths(starts, w, texel.sink, guide);
+        texel.sink.end();
+        if (!options_.guided) continue;
+        for (std::uint32_t lane = 0; lane < lanes; ++lane)
+            w.guide_statistics.add((base + lane) & 1u, w.first_draw[lane].point, w.first_draw[lane].density,
+                                   w.first_radiance[lane]);
+    }
+}
+
+void PathIntegrator::gather_until_converged(Workspace& w, TexelState& texel) const {
+    const std::uint32_t step = (options_.samples + 9) / 10;
+    for (std::uint32_t first = 0; first < options_.samples; first += step) {
+        gather_samples(first, std::min(first + step, options_.samples), w, texel);
+        if (texel.sink.converged(options_.relative_error_of_mean)) return;
+    }
+}
+
+void PathIntegrator::gather_texels(std::span<const GatherSite> sites, std::span<const std::uint32_t> indices,
+                                   Workspace& w, RadianceSums& out, const Context& context) const {
+    LUMEL_CHECK(sites.size() == indices.size() && sites.size() <= kMostTexelsTogether, sites.size(), indices.size());
+    w.texels.clear();
+    for (const GatherSite& site : sites) begin_texel(site, w, w.texels.emplace_back(options_));
+    w.guide.reset();
+    w.guide_statistics.clear();
+    if (options_.stop == StopRule::flux) {
+        for (TexelState& texel : w.texels) {
+            if (context.cancelled()) return;
+            gather_until_converged(w, texel);
+        }
+    } else {
+        // A guide is of one side.
+        const bool guided = options_.guided && options_.samples >= kFewestSamplesForGuide &&
+                            std::ranges::none_of(w.texels, &TexelState::both_sides);
+        std::uint32_t last = guided ? kFirstRound : options_.samples;
+        for (std::uint32_t first = 0; first < options_.samples; first = last, last *= kRoundFactor) {
+            last = std::min(last, options_.samples);
+            if (first > 0) w.guide = w.guide_statistics.learn();
+            for (TexelState& texel : w.texels) {
+                if (context.cancelled()) return;
+                gather_samples(first, last, w, texel);
+            }
+        }
+    }
+    for (std::size_t k = 0; k < sites.size(); ++k) w.texels[k].sink.store(out, indices[k]);
+}
+
+}  // namespace lumel
