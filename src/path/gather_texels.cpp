@@ -15,7 +15,7 @@
 namespace lumel {
 namespace {
 
-constexpr std::uint32_t kFirstRound = 8, kRoundFactor = 4;
+constexpr std::uint32_t kFirstRound = 8, kRoundFactor = 2;
 constexpr std::uint32_t kFewestSamplesForGuide = 64;
 
 }  // namespace
@@ -59,7 +59,7 @@ void PathIntegrator::gather_samples(std::uint32_t first, std::uint32_t last, Wor
             w.starts[lane] = {start.origin, start.normal, texel.half_keys[half], index, start.skip, start.sunlit};
         }
         const auto starts = std::span<const PathStart>(w.starts).first(lanes);
-        texel.sink.begin(starts, texel.both_sides ? 2.0f : 1.0f, guide ? guide->weight() : 1.0);
+        texel.sink.begin(starts, texel.both_sides ? 2.0f : 1.0f);
         trace_paths(starts, w, texel.sink, guide);
         texel.sink.end();
         if (!options_.guided) continue;

@@ -60,10 +60,7 @@ float predicted_gain(const HemisphereGuide& guide, const Bins& seen) {
 
 }  // namespace
 
-HemisphereGuide::HemisphereGuide(const Bins& wanted, float gain)
-    : weight_(gain < 1.5f   ? 1.0
-              : gain < 3.0f ? 2.0
-                            : 4.0) {
+HemisphereGuide::HemisphereGuide(const Bins& wanted) {
     const float scale = (1.0f - kFloor) * static_cast<float>(kBins) / sum(wanted);
     for (std::size_t bin = 0; bin < kBins; ++bin) density_[bin] = kFloor + wanted[bin] * scale;
     std::array<float, kRows> rows{};
@@ -112,7 +109,7 @@ std::optional<HemisphereGuide> GuideStatistics::learn() const {
     if (gain < kLeastGain) return std::nullopt;
     Bins both = moments_[0];
     for (std::size_t bin = 0; bin < both.size(); ++bin) both[bin] += moments_[1][bin];
-    return HemisphereGuide(root(both), gain);
+    return HemisphereGuide(root(both));
 }
 
 }  // namespace lumel

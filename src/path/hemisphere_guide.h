@@ -26,8 +26,8 @@ public:
     // occlusion and sky visibility are measured by the same rays.
     static constexpr float kFloor = 0.25f;
 
-    // `wanted`: at least zero, of any sum above zero. `gain`: what is predicted of it, in variance.
-    explicit HemisphereGuide(const std::array<float, kBins>& wanted, float gain = 1.0f);
+    // `wanted`: at least zero, of any sum above zero.
+    explicit HemisphereGuide(const std::array<float, kBins>& wanted);
 
     struct Draw {
         Vec2 point;     // of the unit square
@@ -37,10 +37,6 @@ public:
     [[nodiscard]] Draw draw(Vec2 u) const;
     [[nodiscard]] float density(Vec2 point) const { return density_[bin_of(point)]; }
 
-    // What a guided path counts for where an unguided one counts for one: the inverse of their variances, but only as
-    // 1, 2 or 4. A weight that followed the samples more closely would be correlated with them.
-    [[nodiscard]] double weight() const { return weight_; }
-
     static std::size_t bin_of(Vec2 point) {
         const auto row = static_cast<std::size_t>(point.x * static_cast<float>(kRows));
         const auto column = static_cast<std::size_t>(point.y * static_cast<float>(kColumns));
@@ -48,7 +44,6 @@ public:
     }
 
 private:
-    double weight_;
     std::array<float, kBins> density_;
     std::array<float, kRows + 1> row_start_;             // cumulative share of the rows
     std::array<float, kRows*(kColumns + 1)> bin_start_;  // cumulative share of the bins in each row

@@ -23,11 +23,9 @@ public:
     explicit TexelSink(const PathOptions& options)
         : ao_distance_(options.ao_distance), scale_(options.layer_scale), included_(options.included) {}
 
-    // `weight` of each of these paths in all means: paths that are better guided count for more.
-    void begin(std::span<const PathStart> starts, float sh_scale, double weight = 1.0) {
+    void begin(std::span<const PathStart> starts, float sh_scale) {
         starts_ = starts;
         sh_scale_ = sh_scale;
-        weight_ = weight;
         wavefront_ = {};
         for (std::size_t lane = 0; lane < starts.size(); ++lane) {
             sample_[lane] = {};
@@ -53,7 +51,7 @@ public:
 
     void free_path(std::uint32_t lane, Vec3 direction, float pdf, float distance, bool sky) {
         const float cosine = std::max(0.0f, dot(direction, starts_[lane].normal));
-        const double weight = weight_ * static_cast<double>(cosine * kInvPi / pdf);
+        const double weight = static_cast<double>(cosine * kInvPi / pdf);
         if (sky) sky_visibility_ += weight;
         if (distance <= ao_distance_) return;
         open_ += weight;
@@ -64,38 +62,36 @@ public:
         for (std::size_t layer = 0; layer < kLayerCount; ++layer)
             for (std::size_t c = 0; c < 3; ++c) {
                 for (std::size_t i = 0; i < kShCoefficients; ++i)
-                    layers_[layer].sh[c][i] += weight_ * static_cast<double>(wavefront_[layer].sh[c][i] * sh_scale_);
-                layers_[layer].irradiance[c] += weight_ * static_cast<double>(wavefront_[layer].irradiance[c]);
+                    layers_[layer].sh[c][i] += static_cast<double>(wavefront_[layer].sh[c][i] * sh_scale_);
+                layers_[layer].irradiance[c] += static_cast<double>(wavefront_[layer].irradiance[c]);
             }
         for (std::size_t lane = 0; lane < starts_.size(); ++lane) {
             // Without a guide 1 or 0. With one the share of void paths is estimated by their weights.
-            const double valid = 1.0 - static_cast<double>(void_[lane]);
-            valid_ += valid;
-            const double counts = weight_ * valid;
+            const double counts = 1.0 - static_cast<double>(void_[lane]);
             count_ += counts;
             squared_counts_ += counts * counts;
             Half& half = halves_[traced_ & 1u];
             half.count += counts;
             for (std::size_t c = 0; c < 3; ++c) {
-                const double value = weight_ * static_cast<double>(sample_[lane][c]);
+                const auto value = static_cast<double>(sample_[lane][c]);
                 half.sum[c] += value;
                 channels_[c].add(value, counts);
             }
-            luminance_.add(weight_ * static_cast<double>(luminance(sample_[lane])), counts);
+            luminance_.add(static_cast<double>(luminance(sample_[lane])), counts);
             ++traced_;
         }
     }
 
     // Frostbite's rule on the texel's own luminance.
     [[nodiscard]] bool converged(double relative_error) const {
-        if (valid_ < 2.0) return false;
+        if (count_ < 2.0) return false;
         return std::sqrt(luminance_.variance(counts())) <= relative_error * luminance_.mean(count_);
     }
 
     void store(RadianceSums& out, std::size_t index) const {
         out.traced[index] = traced_;
-        out.count[index] = valid_ > 0.0 ? static_cast<std::uint32_t>(valid_ + 0.5) : 0;
-        if (out.count[index] == 0 || count_ <= 0.0) return;
+        out.count[index] = count_ > 0.0 ? static_cast<std::uint32_t>(count_ + 0.5) : 0;
+        if (out.count[index] == 0) return;
         const double inverse = 1.0 / count_;
         for (std::size_t layer = 0; layer < kLayerCount; ++layer) {
             LayerMoments& moments = out.layers[index][layer];
@@ -121,14 +117,14 @@ private:
         std::array<Number, 3> irradiance{};
     };
 
-    // Of the v_i by which paths count: their sum, that of their squares; how many paths were valid, how many traced.
+    // Of the v_i by which paths count: their sum, that of their squares; their number.
     struct Counts {
-        double sum, squares, valid, traced;
+        double sum, squares, traced;
     };
-    [[nodiscard]] Counts counts() const { return {count_, squared_counts_, valid_, static_cast<double>(traced_)}; }
+    [[nodiscard]] Counts counts() const { return {count_, squared_counts_, static_cast<double>(traced_)}; }
 
     // Moments of samples x_i over all paths, which count as v_i (a void one as nothing): the mean is sum x / sum v.
-    // Both hold a path's weight.
+    //
     class Moments {
     public:
         void add(double x, double counts) {
@@ -139,7 +135,7 @@ private:
         [[nodiscard]] double mean(double count) const { return sum_ / count; }
         // Of that mean, by the residuals x - mean v (Cochran 1977, ch. 6); without void paths the familiar one.
         [[nodiscard]] double variance(const Counts& v) const {
-            if (v.valid < 2.0) return 0.0;
+            if (v.sum < 2.0) return 0.0;
             const double m = mean(v.sum);
             const double residuals = std::max(0.0, squares_ - 2.0 * m * counted_ + m * m * v.squares);
             return residuals / (v.sum * v.sum) * (v.traced / (v.traced - 1.0));
@@ -176,7 +172,7 @@ private:
     std::array<Half, 2> halves_{};
     std::array<double, 3> bent_{};
     double sky_visibility_ = 0.0, open_ = 0.0;
-    double weight_ = 1.0, count_ = 0.0, squared_counts_ = 0.0, valid_ = 0.0;
+    double count_ = 0.0, squared_counts_ = 0.0;
     std::uint32_t traced_ = 0;
 };
 
