@@ -1,6 +1,7 @@
 // TEXCOORD_1 as it comes: kept, packed anew mesh by mesh, or rejected, and what is told of it.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "chart/chart_set.h"
@@ -9,26 +10,44 @@
 namespace lumel {
 namespace {
 
-using test::expect_clean;
-using test::judge;
-using test::layout;
-using test::Layout;
 using test::Level;
 using test::LevelBuilder;
 using test::scaled;
 
-const Diagnostic* diagnostic(const Context& context, std::string_view code) {
-    for (const Diagnostic& d : context.diagnostics.all())
-        if (d.code == code) return &d;
-    return nullptr;
-}
-std::string first_example(const Context& context, std::string_view code) {
-    const Diagnostic* d = diagnostic(context, code);
-    return d && !d->examples.empty() ? d->examples[0] : "";
-}
-std::string message(const Context& context, std::string_view code) {
-    const Diagnostic* d = diagnostic(context, code);
-    return d ? d->message : "";
+// A level's layout, and what was told while it was made.
+struct LaidOut : test::Layout {
+    explicit LaidOut(const Level& from, const ChartOptions& options = {}) : level(from) {
+        static_cast<test::Layout&>(*this) = test::layout(level, options, context);
+    }
+    void expect_clean() const { test::expect_clean(test::judge(level, *this)); }
+    [[nodiscard]] bool told_nothing() const { return context.diagnostics.all().empty(); }
+    [[nodiscard]] std::uint64_t count(std::string_view code) const { return context.diagnostics.count(code); }
+    [[nodiscard]] std::string first_example(std::string_view code) const {
+        const Diagnostic* d = diagnostic(code);
+        return d && !d->examples.empty() ? d->examples[0] : "";
+    }
+    [[nodiscard]] std::string message(std::string_view code) const {
+        const Diagnostic* d = diagnostic(code);
+        return d ? d->message : "";
+    }
+
+    const Level& level;
+    Context context{1};
+
+private:
+    [[nodiscard]] const Diagnostic* diagnostic(std::string_view code) const {
+        const auto& all = context.diagnostics.all();
+        const auto found = std::ranges::find(all, code, &Diagnostic::code);
+        return found == all.end() ? nullptr : &*found;
+    }
+};
+
+// One node for each mesh.
+template <class... Meshes>
+Level level_of(Meshes... meshes) {
+    LevelBuilder b;
+    (b.instance(b.mesh(std::move(meshes))), ...);
+    return b.build();
 }
 
 Mesh floor_with_uv1(Vec2 low, Vec2 size) {
@@ -37,100 +56,9 @@ Mesh floor_with_uv1(Vec2 low, Vec2 size) {
     return mesh;
 }
 
-TEST(KeptLayout, IsKeptUnchanged) {
-    LevelBuilder b;
-    b.instance(b.mesh(floor_with_uv1({0.05f, 0.05f}, {0.4f, 0.4f})));
-    b.instance(b.mesh(floor_with_uv1({0.55f, 0.05f}, {0.4f, 0.4f})));
-    const Level level = b.build();
-    Context context(1);
-    ChartOptions options;
-    options.resolution_width = 300;
-    options.resolution_height = 200;
-    const Layout l = layout(level, options, context);
-    EXPECT_TRUE(l.charts.scene_wide);
-    ASSERT_EQ(l.atlas.pages.size(), 1u);
-    EXPECT_EQ(l.atlas.pages[0].width, 300u);
-    for (std::uint32_t w = 0; w < level.geometry.triangle_count(); ++w) {
-        const auto uv = l.atlas.triangle_uv(l.charts, level.geometry, level.scene, w);
-        for (std::size_t k = 0; k < 3; ++k) {
-            const Vec2 file = level.geometry.uv1[level.geometry.triangles[w].vertices[k]];
-            EXPECT_EQ(uv.texels[k], (Vec2{file.x * 300.0f, file.y * 200.0f}));
-        }
-    }
-    expect_clean(judge(level, l));
-    EXPECT_TRUE(context.diagnostics.all().empty());
-}
-
-// Two floors of 4 m2 on 0.16 of the page each: at 10 texels per metre 800 texels over 0.32 of the page, an edge
-// of 50.
-TEST(KeptLayout, ResolutionFollowsDensityOrBudget) {
-    LevelBuilder b;
-    b.instance(b.mesh(floor_with_uv1({0.05f, 0.05f}, {0.4f, 0.4f})));
-    b.instance(b.mesh(floor_with_uv1({0.55f, 0.05f}, {0.4f, 0.4f})));
-    const Level level = b.build();
-    Context context(1);
-    ChartOptions options;
-    options.texels_per_metre = 10.0;
-    EXPECT_EQ(layout(level, options, context).atlas.pages[0].width, 52u) << "50, up to a multiple of 4";
-    options.texels_per_metre = 0.0;
-    options.texel_budget = 3200.0;
-    EXPECT_EQ(layout(level, options, context).atlas.pages[0].width, 100u);
-}
-
-TEST(KeptLayout, NodesThatOverlapGetChartsPerMesh) {
-    LevelBuilder b;
-    b.instance(b.mesh(floor_with_uv1({0, 0}, {0.5f, 0.5f})))
-        .instance(b.mesh(floor_with_uv1({0.2f, 0.2f}, {0.8f, 0.8f})));
-    const Level level = b.build();
-    Context context(1);
-    const Layout l = layout(level, {}, context);
-    EXPECT_FALSE(l.charts.scene_wide);
-    EXPECT_TRUE(l.charts.meshes[0].from_uv1);
-    expect_clean(judge(level, l));
-    // Kept mesh by mesh, but not unchanged: that is told, and why.
-    EXPECT_GT(context.diagnostics.count("uv1-repacked"), 0u);
-    EXPECT_NE(first_example(context, "uv1-repacked").find("node 'node 0' triangle "), std::string::npos);
-    EXPECT_NE(first_example(context, "uv1-repacked").find(" and node 'node 1' triangle "), std::string::npos);
-    EXPECT_EQ(context.diagnostics.count("uv-overlap"), 0u) << "the mesh layouts themselves are sound";
-
-    ChartOptions asked;
-    asked.uv1 = Uv1Policy::scene;
-    Context forced(1);
-    EXPECT_TRUE(layout(level, asked, forced).charts.scene_wide);
-    EXPECT_GT(forced.diagnostics.count("uv-overlap"), 0u);
-    EXPECT_EQ(forced.diagnostics.count("uv-overlap"), context.diagnostics.count("uv1-repacked"));
-    EXPECT_NE(message(forced, "uv-overlap").find("kept as asked"), std::string::npos);
-    EXPECT_GT(forced.diagnostics.count("uv-bleeding"), 0u);
-}
-
-TEST(KeptLayout, AMeshInstancedTwiceGetsChartsPerInstance) {
-    LevelBuilder b;
-    const std::uint32_t m = b.mesh(floor_with_uv1({0, 0}, {0.5f, 0.5f}));
-    b.instance(m).instance(m, scaled({1, 1, 1}, {9, 0, 0}));
-    const Level level = b.build();
-    Context context(1);
-    const Layout l = layout(level, {}, context);
-    EXPECT_FALSE(l.charts.scene_wide);
-    expect_clean(judge(level, l));
-    EXPECT_EQ(first_example(context, "uv1-repacked"), "node 'node 1' shares its mesh with another node");
-}
-
-TEST(KeptLayout, PaddingTooNarrowForThePageIsReported) {
-    LevelBuilder b;
-    b.instance(b.mesh(floor_with_uv1({0.0f, 0.0f}, {0.495f, 1})))
-        .instance(b.mesh(floor_with_uv1({0.505f, 0}, {0.495f, 1})));
-    const Level level = b.build();
-    ChartOptions options;
-    options.resolution_width = options.resolution_height = 512;
-    Context fine(1), coarse(1);
-    layout(level, options, fine);
-    EXPECT_EQ(fine.diagnostics.count("uv-bleeding"), 0u);
-    options.resolution_width = options.resolution_height = 32;
-    layout(level, options, coarse);
-    EXPECT_EQ(coarse.diagnostics.count("uv-bleeding"), 64u) << "the two columns beside the gap";
-    EXPECT_EQ(first_example(coarse, "uv-bleeding"),
-              "node 'node 0' chart 0 triangle 2 and node 'node 1' chart 0 triangle 0: 64 texels of 32x32 at UV "
-              "(0.4844, 0.0156)");
+// Two floors side by side on the page, with room between them.
+Level two_floors() {
+    return level_of(floor_with_uv1({0.05f, 0.05f}, {0.4f, 0.4f}), floor_with_uv1({0.55f, 0.05f}, {0.4f, 0.4f}));
 }
 
 // Both halves of a layout as one mesh, the second one elsewhere in space.
@@ -153,24 +81,97 @@ ChartOptions square_page(std::uint32_t edge, Uv1Policy policy = Uv1Policy::autom
     return options;
 }
 
+TEST(KeptLayout, IsKeptUnchanged) {
+    const Level level = two_floors();
+    ChartOptions options;
+    options.resolution_width = 300;
+    options.resolution_height = 200;
+    const LaidOut l(level, options);
+    EXPECT_TRUE(l.charts.scene_wide);
+    ASSERT_EQ(l.atlas.pages.size(), 1u);
+    EXPECT_EQ(l.atlas.pages[0].width, 300u);
+    for (std::uint32_t w = 0; w < level.geometry.triangle_count(); ++w) {
+        const auto uv = l.atlas.triangle_uv(l.charts, level.geometry, level.scene, w);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec2 file = level.geometry.uv1[level.geometry.triangles[w].vertices[k]];
+            EXPECT_EQ(uv.texels[k], (Vec2{file.x * 300.0f, file.y * 200.0f}));
+        }
+    }
+    l.expect_clean();
+    EXPECT_TRUE(l.told_nothing());
+}
+
+// Two floors of 4 m2 on 0.16 of the page each: at 10 texels per metre 800 texels over 0.32 of the page, an edge
+// of 50.
+TEST(KeptLayout, ResolutionFollowsDensityOrBudget) {
+    const Level level = two_floors();
+    ChartOptions options;
+    options.texels_per_metre = 10.0;
+    EXPECT_EQ(LaidOut(level, options).atlas.pages[0].width, 52u) << "50, up to a multiple of 4";
+    options.texels_per_metre = 0.0;
+    options.texel_budget = 3200.0;
+    EXPECT_EQ(LaidOut(level, options).atlas.pages[0].width, 100u);
+}
+
+TEST(KeptLayout, NodesThatOverlapGetChartsPerMesh) {
+    const Level level = level_of(floor_with_uv1({0, 0}, {0.5f, 0.5f}), floor_with_uv1({0.2f, 0.2f}, {0.8f, 0.8f}));
+    const LaidOut l(level);
+    EXPECT_FALSE(l.charts.scene_wide);
+    EXPECT_TRUE(l.charts.meshes[0].from_uv1);
+    l.expect_clean();
+    // Kept mesh by mesh, but not unchanged: that is told, and why.
+    EXPECT_GT(l.count("uv1-repacked"), 0u);
+    EXPECT_NE(l.first_example("uv1-repacked").find("node 'node 0' triangle "), std::string::npos);
+    EXPECT_NE(l.first_example("uv1-repacked").find(" and node 'node 1' triangle "), std::string::npos);
+    EXPECT_EQ(l.count("uv-overlap"), 0u) << "the mesh layouts themselves are sound";
+
+    ChartOptions asked;
+    asked.uv1 = Uv1Policy::scene;
+    const LaidOut forced(level, asked);
+    EXPECT_TRUE(forced.charts.scene_wide);
+    EXPECT_GT(forced.count("uv-overlap"), 0u);
+    EXPECT_EQ(forced.count("uv-overlap"), l.count("uv1-repacked"));
+    EXPECT_NE(forced.message("uv-overlap").find("kept as asked"), std::string::npos);
+    EXPECT_GT(forced.count("uv-bleeding"), 0u);
+}
+
+TEST(KeptLayout, AMeshInstancedTwiceGetsChartsPerInstance) {
+    LevelBuilder b;
+    const std::uint32_t m = b.mesh(floor_with_uv1({0, 0}, {0.5f, 0.5f}));
+    b.instance(m).instance(m, scaled({1, 1, 1}, {9, 0, 0}));
+    const Level level = b.build();
+    const LaidOut l(level);
+    EXPECT_FALSE(l.charts.scene_wide);
+    l.expect_clean();
+    EXPECT_EQ(l.first_example("uv1-repacked"), "node 'node 1' shares its mesh with another node");
+}
+
+TEST(KeptLayout, PaddingTooNarrowForThePageIsReported) {
+    const Level level = level_of(floor_with_uv1({0.0f, 0.0f}, {0.495f, 1}), floor_with_uv1({0.505f, 0}, {0.495f, 1}));
+    EXPECT_EQ(LaidOut(level, square_page(512)).count("uv-bleeding"), 0u);
+    const LaidOut coarse(level, square_page(32));
+    EXPECT_EQ(coarse.count("uv-bleeding"), 64u) << "the two columns beside the gap";
+    EXPECT_EQ(coarse.first_example("uv-bleeding"),
+              "node 'node 0' chart 0 triangle 2 and node 'node 1' chart 0 triangle 0: 64 texels of 32x32 at UV "
+              "(0.4844, 0.0156)");
+}
+
 // Within one mesh, islands that share texels are one chart, as a texel has one owner; and that is told.
 TEST(KeptLayout, IslandsThatShareTexelsAreOneChart) {
-    LevelBuilder b;
-    b.instance(
-        b.mesh(joined(floor_with_uv1({0, 0}, {0.495f, 1}), floor_with_uv1({0.505f, 0}, {0.495f, 1}), {9, 0, 0})));
-    const Level level = b.build();
-    Context fine(1), coarse(1), repacked(1);
-    EXPECT_EQ(layout(level, square_page(512), fine).charts.meshes[0].charts.size(), 2u);
-    EXPECT_EQ(fine.diagnostics.count("uv-bleeding"), 0u);
-    const Layout kept = layout(level, square_page(32), coarse);
-    EXPECT_TRUE(kept.charts.scene_wide) << "kept unchanged all the same";
-    EXPECT_EQ(kept.charts.meshes[0].charts.size(), 1u);
-    EXPECT_EQ(coarse.diagnostics.count("uv-bleeding"), 64u) << "the two columns beside the gap";
+    const Level level =
+        level_of(joined(floor_with_uv1({0, 0}, {0.495f, 1}), floor_with_uv1({0.505f, 0}, {0.495f, 1}), {9, 0, 0}));
+    const LaidOut fine(level, square_page(512));
+    EXPECT_EQ(fine.charts.meshes[0].charts.size(), 2u);
+    EXPECT_EQ(fine.count("uv-bleeding"), 0u);
+    const LaidOut coarse(level, square_page(32));
+    EXPECT_TRUE(coarse.charts.scene_wide) << "kept unchanged all the same";
+    EXPECT_EQ(coarse.charts.meshes[0].charts.size(), 1u);
+    EXPECT_EQ(coarse.count("uv-bleeding"), 64u) << "the two columns beside the gap";
     // Packed anew they are apart at any resolution.
-    const Layout packed = layout(level, square_page(32, Uv1Policy::mesh), repacked);
+    const LaidOut packed(level, square_page(32, Uv1Policy::mesh));
     EXPECT_EQ(packed.charts.meshes[0].charts.size(), 2u);
-    expect_clean(judge(level, packed));
-    EXPECT_TRUE(repacked.diagnostics.all().empty());
+    packed.expect_clean();
+    EXPECT_TRUE(packed.told_nothing());
 }
 
 // Tiles of one floor, side by side in space as in the layout, without any padding: their light goes on, nothing
@@ -185,105 +186,88 @@ TEST(KeptLayout, ChartsThatGoOnInEachOtherDoNotBleed) {
             else
                 b.instance(b.mesh(left)).instance(b.mesh(right), scaled({1, 1, 1}, {2 + gap, 0, 0}));
             const Level level = b.build();
-            Context context(1);
-            EXPECT_TRUE(layout(level, square_page(32), context).charts.scene_wide);
-            EXPECT_EQ(context.diagnostics.count("uv-bleeding") > 0, gap > 0.0f) << gap << one_mesh;
+            const LaidOut l(level, square_page(32));
+            EXPECT_TRUE(l.charts.scene_wide);
+            EXPECT_EQ(l.count("uv-bleeding") > 0, gap > 0.0f) << gap << one_mesh;
         }
     }
     // And a wall that stands on the floor's edge: one place, but another light.
     LevelBuilder b;
     const Affine upright{{Vec3{0, 1, 0}, Vec3{-1, 0, 0}, Vec3{0, 0, 1}}, {2, 0, 0}};
     b.instance(b.mesh(left)).instance(b.mesh(right), upright);
-    const Level level = b.build();
-    Context context(1);
-    layout(level, square_page(32), context);
-    EXPECT_EQ(context.diagnostics.count("uv-bleeding"), 64u);
+    EXPECT_EQ(LaidOut(b.build(), square_page(32)).count("uv-bleeding"), 64u);
 }
 
 // A sliver of the surface may have no area in the layout: it lies on a line of another chart, and bleeds nothing.
 TEST(KeptLayout, CollapsedTrianglesDoNotBleed) {
     Mesh sliver = test::flat_grid(1, 0.04f);  // 0.04 % of the floor: fewer than the thousandth that is let pass
     for (const Vec3 p : sliver.positions) sliver.uv1.push_back({0.2f + 2.5f * p.x, 0.5f});
-    LevelBuilder b;
-    b.instance(b.mesh(joined(floor_with_uv1({0, 0}, {1, 1}), sliver, {0.4f, 0, -1})));
-    const Level level = b.build();
-    Context context(1);
-    const Layout l = layout(level, square_page(32), context);
+    const Level level = level_of(joined(floor_with_uv1({0, 0}, {1, 1}), sliver, {0.4f, 0, -1}));
+    const LaidOut l(level, square_page(32));
     EXPECT_TRUE(l.charts.scene_wide);
     EXPECT_EQ(l.charts.meshes[0].charts.size(), 2u);
-    EXPECT_EQ(context.diagnostics.count("uv-bleeding"), 0u);
+    EXPECT_EQ(l.count("uv-bleeding"), 0u);
 }
 
 // Two islands of one mesh on top of each other, under each policy.
 TEST(KeptLayout, OverlapsInsideAMesh) {
-    LevelBuilder b;
-    b.instance(
-        b.mesh(joined(floor_with_uv1({0, 0}, {0.5f, 0.5f}), floor_with_uv1({0.25f, 0.25f}, {0.5f, 0.5f}), {9, 0, 0})));
-    const Level level = b.build();
+    const Level level =
+        level_of(joined(floor_with_uv1({0, 0}, {0.5f, 0.5f}), floor_with_uv1({0.25f, 0.25f}, {0.5f, 0.5f}), {9, 0, 0}));
     {
-        Context context(1);  // automatic: charts of ours
-        const Layout l = layout(level, {}, context);
+        const LaidOut l(level);  // automatic: charts of ours
         EXPECT_FALSE(l.charts.meshes[0].from_uv1);
-        expect_clean(judge(level, l));
-        EXPECT_EQ(context.diagnostics.count("uv1-rejected"), 1u);
+        l.expect_clean();
+        EXPECT_EQ(l.count("uv1-rejected"), 1u);
         // The quarter of the page that both cover is one cell of 2 x 2 in either: two triangles each, along one
         // diagonal.
-        EXPECT_EQ(first_example(context, "uv1-rejected"), "node 'node 0': 2 pairs of triangles overlap in it");
-        ASSERT_EQ(context.diagnostics.count("uv-overlap"), 2u);
-        EXPECT_EQ(first_example(context, "uv-overlap"), "node 'node 0' triangles 6 and 8 at UV (0.4167, 0.3333)");
-        EXPECT_NE(message(context, "uv-overlap").find("charts were made"), std::string::npos);
-        EXPECT_EQ(context.diagnostics.count("uv1-repacked"), 0u) << "nothing of it was kept";
+        EXPECT_EQ(l.first_example("uv1-rejected"), "node 'node 0': 2 pairs of triangles overlap in it");
+        ASSERT_EQ(l.count("uv-overlap"), 2u);
+        EXPECT_EQ(l.first_example("uv-overlap"), "node 'node 0' triangles 6 and 8 at UV (0.4167, 0.3333)");
+        EXPECT_NE(l.message("uv-overlap").find("charts were made"), std::string::npos);
+        EXPECT_EQ(l.count("uv1-repacked"), 0u) << "nothing of it was kept";
     }
     {
-        Context context(1);  // scene: as it is, and told
-        const Layout l = layout(level, square_page(64, Uv1Policy::scene), context);
+        const LaidOut l(level, square_page(64, Uv1Policy::scene));  // as it is, and told
         EXPECT_TRUE(l.charts.scene_wide);
-        EXPECT_EQ(context.diagnostics.count("uv-overlap"), 2u);
-        EXPECT_NE(message(context, "uv-overlap").find("kept as asked"), std::string::npos);
+        EXPECT_EQ(l.count("uv-overlap"), 2u);
+        EXPECT_NE(l.message("uv-overlap").find("kept as asked"), std::string::npos);
     }
     {
-        Context context(1);  // mesh: islands on top of each other are packed apart
-        const Layout l = layout(level, square_page(64, Uv1Policy::mesh), context);
+        const LaidOut l(level, square_page(64, Uv1Policy::mesh));  // islands on top of each other are packed apart
         EXPECT_TRUE(l.charts.meshes[0].from_uv1);
         EXPECT_EQ(l.charts.meshes[0].charts.size(), 2u);
-        expect_clean(judge(level, l));
-        EXPECT_EQ(context.diagnostics.count("uv-overlap"), 2u);
-        EXPECT_NE(message(context, "uv-overlap").find("packed apart"), std::string::npos);
+        l.expect_clean();
+        EXPECT_EQ(l.count("uv-overlap"), 2u);
+        EXPECT_NE(l.message("uv-overlap").find("packed apart"), std::string::npos);
     }
 }
 
 TEST(KeptLayout, UvsThatAreNoNumbersAreRejected) {
-    LevelBuilder b;
     Mesh bad = floor_with_uv1({0, 0}, {1, 1});
     bad.uv1[4].x = std::nanf("");
-    b.instance(b.mesh(std::move(bad)));
-    const Level level = b.build();
+    const Level level = level_of(std::move(bad));
     for (const Uv1Policy policy : {Uv1Policy::automatic, Uv1Policy::mesh}) {
-        Context context(1);
         ChartOptions options;
         options.uv1 = policy;
-        const Layout l = layout(level, options, context);
+        const LaidOut l(level, options);
         EXPECT_FALSE(l.charts.meshes[0].from_uv1);
-        expect_clean(judge(level, l));
-        EXPECT_NE(first_example(context, "uv1-rejected").find("not finite at triangle"), std::string::npos);
+        l.expect_clean();
+        EXPECT_NE(l.first_example("uv1-rejected").find("not finite at triangle"), std::string::npos);
     }
     Context context(1);
     EXPECT_FALSE(make_charts(level.scene, level.geometry, square_page(64, Uv1Policy::scene), context).ok());
 }
 
 TEST(KeptLayout, RejectedLayoutsGetChartsOfOurs) {
-    LevelBuilder b;
-    Mesh bad = floor_with_uv1({0, 0}, {1.5f, 1});
-    b.instance(b.mesh(std::move(bad))).instance(b.mesh(test::box({1, 1, 1})));
-    const Level level = b.build();
-    Context context(1);
-    const Layout l = layout(level, {}, context);
+    const Level level = level_of(floor_with_uv1({0, 0}, {1.5f, 1}), test::box({1, 1, 1}));
+    const LaidOut l(level);
     EXPECT_FALSE(l.charts.meshes[0].from_uv1);
-    EXPECT_EQ(context.diagnostics.count("uv1-rejected"), 1u) << "the box has none, which is no fault";
-    expect_clean(judge(level, l));
+    EXPECT_EQ(l.count("uv1-rejected"), 1u) << "the box has none, which is no fault";
+    l.expect_clean();
 
     ChartOptions options;
     options.uv1 = Uv1Policy::scene;
+    Context context(1);
     const auto refused = make_charts(level.scene, level.geometry, options, context);
     ASSERT_FALSE(refused.ok());
     EXPECT_EQ(refused.error().code, ErrorCode::usage);
