@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "image/metrics.h"
+#include "math/normal_quantile.h"
 #include "methods.h"
 #include "support/statistics.h"
 #include "support/temporary_folder.h"
@@ -122,6 +123,132 @@ TEST(Score, BiasIsThatOfBlockMeans) {
     EXPECT_NEAR(s.block_bias, (0.02 + 0.85 * 0.06) / 1.01, 1e-6);
     // 256 texels with a deviation of 3 x 0.1 in the sum of channels, of 6: 1.96 deviations of the mean.
     EXPECT_NEAR(s.block_noise, 1.96 * 0.3 / 16 / (6 * 1.01), 1e-4);
+}
+
+// 64 x 64 texels, row by row brighter from 1 to 2, whose channels err independently by normal noise: the bake's
+// deviation is `noise` of the brightness, that of each half of the reference `reference_noise`. The bake states its
+// variance times `stated` of the row.
+class GaussianPage {
+public:
+    static constexpr std::uint32_t kEdge = 64, kTexels = kEdge * kEdge;
+
+    template <class Stated>
+    GaussianPage(float noise, float reference_noise, const Stated& stated) {
+        texels_.width = texels_.height = kEdge;
+        sums_.resize(kTexels);
+        for (std::uint32_t i = 0; i < kTexels; ++i) {
+            const std::uint32_t row = i / kEdge;
+            texels_.x.push_back(static_cast<std::uint16_t>(i % kEdge));
+            texels_.y.push_back(static_cast<std::uint16_t>(row));
+            const float truth = 1.0f + static_cast<float>(i) / kTexels;
+            sums_.layers[i][1].irradiance = erring(truth, noise);
+            sums_.variance[i] = Vec3{1, 1, 1} * (stated(row) * truth * truth * noise * noise);
+            sums_.count[i] = sums_.traced[i] = 1;
+            for (ReferenceHalf* half : {&a_, &b_}) {
+                half->light.push_back({erring(truth, reference_noise), {}});
+                half->valid.push_back(1);
+            }
+        }
+    }
+    void brighten(float factor) {
+        for (auto& layers : sums_.layers) layers[1].irradiance *= factor;
+    }
+    [[nodiscard]] Score scored() const { return score(sums_, a_, b_, texels_, {0, kTexels}); }
+
+private:
+    Vec3 erring(float truth, float noise) {
+        const auto normal = [&] {
+            return static_cast<float>(normal_quantile(static_cast<double>(random_.unit()) + 0x1p-25));
+        };
+        const float x = normal(), y = normal(), z = normal();
+        return Vec3{1, 1, 1} * truth + Vec3{x, y, z} * (truth * noise);
+    }
+
+    test::Random random_{11};
+    TexelBuffer texels_;
+    RadianceSums sums_;
+    ReferenceHalf a_, b_;
+};
+
+// A share that `draws` of probability p show, within four deviations.
+void expect_share(double share, double p, double draws) {
+    EXPECT_NEAR(share, p, 4.0 * std::sqrt(p * (1.0 - p) / draws));
+}
+
+// The share of normal draws within 1.96 deviations where these are stated `stated` times too large.
+double share_within(double stated) { return 2.0 * normal_cdf(1.96 * stated) - 1.0; }
+
+TEST(Score, CoverageIsTheShareOfNormalNoiseWithinItsInterval) {
+    constexpr double kDraws = 3.0 * GaussianPage::kTexels;
+    const auto coverage = [](float stated_variance) {
+        return GaussianPage(0.1f, 0.0f, [&](std::uint32_t) { return stated_variance; }).scored().coverage;
+    };
+    expect_share(coverage(1.0f), 0.95, kDraws);
+    expect_share(coverage(0.5f), share_within(std::sqrt(0.5)), kDraws);  // 0.834
+    expect_share(coverage(0.25f), share_within(0.5), kDraws);            // 0.673
+    EXPECT_EQ(coverage(100.0f), 1.0);
+}
+
+// Stated four times too small in the darkest rows and nine times too large in the brightest: the deciles tell, which
+// are of 6.4 rows.
+TEST(Score, CoverageOfDecilesIsByBrightness) {
+    const Score s = GaussianPage(0.1f, 0.0f, [](std::uint32_t row) {
+                        return row < 7 ? 0.25f : row < 57 ? 1.0f : 9.0f;
+                    }).scored();
+    constexpr double kDraws = 3.0 * GaussianPage::kTexels / 10.0;
+    expect_share(s.lowest_coverage, share_within(0.5), kDraws);
+    EXPECT_EQ(s.highest_coverage, 1.0);  // 3.7e-9 beyond 5.88 deviations
+    const double expected = (7 * share_within(0.5) + 50 * 0.95 + 7 * 1.0) / 64;
+    expect_share(s.coverage, expected, 10.0 * kDraws);
+}
+
+// The reference's own variance widens the interval, by its two halves: the difference of bake and reference is normal,
+// its estimated variance v_x + v_a chi-squared of one degree, where v_a = v_x / 2 is true.
+TEST(Score, CoverageAllowsForTheNoiseOfTheReference) {
+    const double with = GaussianPage(0.1f, 0.1f, [](std::uint32_t) { return 1.0f; }).scored().coverage;
+    double expected = 0.0;  // over the normal quantiles g of (a - b) / sqrt(2)
+    constexpr int kSteps = 2000;
+    for (int i = 0; i < kSteps; ++i) {
+        const double g = normal_quantile((i + 0.5) / kSteps);
+        expected += share_within(std::sqrt((1.0 + 0.5 * g * g) / 1.5)) / kSteps;
+    }
+    EXPECT_GT(expected, 0.92);
+    expect_share(with, expected, 3.0 * GaussianPage::kTexels);
+}
+
+// Noise of 5 % in the bake and in each half: what is scored is the bake's variance alone. A product of errors has a
+// deviation of sqrt(5) v, so the mean of 12288 has one of 2 %; the floor adds a hundredth of the mean's square to
+// squares between 1 and 4.
+TEST(Score, OfPureNoiseIsItsVarianceWhateverTheReferences) {
+    constexpr double kVariance = 0.05 * 0.05;
+    double share = 0.0;  // of the square in what it is divided by
+    for (std::uint32_t i = 0; i < GaussianPage::kTexels; ++i) {
+        const double truth = 1.0 + static_cast<double>(i) / GaussianPage::kTexels;
+        share += truth * truth / (truth * truth + 0.01 * 1.5 * 1.5) / GaussianPage::kTexels;
+    }
+    for (const float reference_noise : {0.0f, 0.05f}) {
+        const Score s = GaussianPage(0.05f, reference_noise, [](std::uint32_t) { return 1.0f; }).scored();
+        EXPECT_NEAR(s.relmse, kVariance * share, 4 * 0.02 * kVariance) << reference_noise;
+        EXPECT_NEAR(s.reference_relmse, reference_noise > 0.0f ? 0.5 * kVariance * share : 0.0, 0.05 * kVariance);
+    }
+}
+
+// 2 % too bright everywhere is a bias of 2 % in all and in each block (less the hundredth of the mean that is
+// added to what it is divided by: 0.8 to 1.4 % of the light of a block).
+TEST(Score, AConstantShiftIsTheBiasOfEveryBlock) {
+    GaussianPage exact(0.0f, 0.0f, [](std::uint32_t) { return 1.0f; });
+    exact.brighten(1.02f);
+    Score s = exact.scored();
+    EXPECT_NEAR(s.bias, 0.02, 1e-6);
+    EXPECT_NEAR(s.block_bias, 0.02, 0.02 * 0.014);
+    EXPECT_EQ(s.coverage, 0.0);
+    // With noise of 5 %: 768 values in a block, so 0.18 % of noise in each of 16, and the largest of them is two
+    // deviations up.
+    GaussianPage noisy(0.05f, 0.0f, [](std::uint32_t) { return 1.0f; });
+    noisy.brighten(1.02f);
+    s = noisy.scored();
+    EXPECT_NEAR(s.bias, 0.02, 4 * 0.0018 / 4);
+    EXPECT_NEAR(s.block_bias, 0.02 + 1.8 * 0.0018, 3 * 0.0018);
 }
 
 TEST(Score, JointQuantileOfNormalsIsTheirs) {
