@@ -317,7 +317,11 @@ void FluxIntegrator::gather_texel(const GatherSite& site, Workspace& w, Radiance
     LUMEL_CHECK(!site.points.empty() && site.points.size() <= kSamplesPerTexel && !options_.two_sided,
                 site.points.size());
     const std::uint32_t key = sampler_key(options_.seed, site.id);
+    // Lumel's points: even and odd samples are a set each. Halton's: all are one.
+    const std::uint32_t sets = choices_.points == FluxPoints::sobol ? 2 : 1;
+    const std::array<std::uint32_t, 2> set_keys{key, mix32(key)};
     const std::size_t count = find_origins(site, key, w);
+    const auto half_of_origins = static_cast<std::uint32_t>(count / 2);
     TexelSink sink(options_);
     const bool may_stop = options_.stop == StopRule::flux;
     const std::uint32_t step = may_stop ? (options_.samples + 9) / 10 : options_.samples;
@@ -325,13 +329,15 @@ void FluxIntegrator::gather_texel(const GatherSite& site, Workspace& w, Radiance
     for (std::uint32_t base = 0, lanes = 0; base < options_.samples; base += lanes) {
         lanes = std::min({static_cast<std::uint32_t>(kWavefrontLanes), next_check - base, options_.samples - base});
         for (std::uint32_t lane = 0; lane < lanes; ++lane) {
-            const std::uint32_t sample = base + lane;
-            w.starts[lane] = {{}, {}, key, sample, kNone};
+            const std::uint32_t set = (base + lane) % sets, sample = (base + lane) / sets;
+            PathStart& start = w.starts[lane];
+            start = {{}, {}, set_keys[set], sample, kNone};
             const std::size_t random =
                 std::min(static_cast<std::size_t>(numbers(lane, w).origin() * static_cast<float>(count)), count - 1);
-            const std::size_t in_turn = (count == kSamplesPerTexel ? sample ^ key : sample + key) % count;
+            const std::uint32_t turn = sample + set * half_of_origins;
+            const std::size_t in_turn = (count == kSamplesPerTexel ? turn ^ key : turn + key) % count;
             const SurfaceStart& origin = w.origins[choices_.origins == FluxChoices::Origins::random ? random : in_turn];
-            w.starts[lane] = {origin.origin, origin.normal, key, sample, origin.skip};
+            start = {origin.origin, origin.normal, start.key, sample, origin.skip};
         }
         sink.begin(std::span<const PathStart>(w.starts).first(lanes), 1.0f);
         trace_paths(lanes, w, sink);

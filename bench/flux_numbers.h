@@ -13,7 +13,7 @@ namespace lumel::bench {
 
 enum class FluxPoints : std::uint8_t {
     halton,  // rotated
-    sobol    // Lumel's: Owen-scrambled
+    sobol    // Lumel's: Owen-scrambled, even and odd samples a set each
 };
 
 // The digits of `index` in the given base, mirrored at the point.
