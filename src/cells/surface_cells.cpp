@@ -117,12 +117,8 @@ void SurfaceCells::lay_out(const Scene& scene, const WorldGeometry& geometry, co
 
 std::uint32_t SurfaceCells::front_at(std::uint32_t page, std::int32_t x, std::int32_t y,
                                      std::uint32_t placement) const {
-    const TexelBuffer& texels = pages_[page];
-    if (x < 0 || y < 0 || x >= static_cast<std::int32_t>(texels.width) || y >= static_cast<std::int32_t>(texels.height))
-        return kNone;
-    const std::uint32_t texel =
-        texels.texel_at[static_cast<std::size_t>(y) * texels.width + static_cast<std::size_t>(x)];
-    if (texel == kNone || texels.chart[texel] != placement) return kNone;
+    const std::uint32_t texel = pages_[page].at(x, y);
+    if (texel == kNone || pages_[page].chart[texel] != placement) return kNone;
     return first_cell_[page] + texel;
 }
 

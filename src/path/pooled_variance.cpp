@@ -10,23 +10,15 @@
 namespace lumel {
 namespace {
 
-constexpr int kRadius = 3;                   // of the neighbourhood, in texels
-constexpr float kNormalCosine = 0.8660254f;  // 30 degrees
-
-// Texel of the pixel, or kNone.
-std::uint32_t texel_at(const TexelBuffer& texels, int x, int y) {
-    if (x < 0 || y < 0 || x >= static_cast<int>(texels.width) || y >= static_cast<int>(texels.height)) return kNone;
-    return texels.texel_at[static_cast<std::size_t>(y) * texels.width + static_cast<std::size_t>(x)];
-}
+constexpr int kRadius = 3;  // of the neighbourhood, in texels
 
 Vec3 pooled(const TexelBuffer& texels, const RadianceSums& sums, std::size_t i) {
     Vec3 shown{}, stated{};
     float count = 0.0f;
     for (int dy = -kRadius; dy <= kRadius; ++dy)
         for (int dx = -kRadius; dx <= kRadius; ++dx) {
-            const std::uint32_t j = texel_at(texels, texels.x[i] + dx, texels.y[i] + dy);
-            if (j == kNone || texels.chart[j] != texels.chart[i] || !sums.valid(j) || sums.count[j] < 2) continue;
-            if (dot(texels.normal[i], texels.normal[j]) < kNormalCosine) continue;
+            const std::uint32_t j = texels.at(texels.x[i] + dx, texels.y[i] + dy);
+            if (j == kNone || !texels.on_one_surface(i, j) || !sums.valid(j) || sums.count[j] < 2) continue;
             const Vec3 d = sums.half_difference[j];
             shown += d * d * 0.25f;
             stated += sums.variance[j];

@@ -15,10 +15,9 @@
 namespace lumel {
 namespace {
 
-constexpr float kNormalCosine = 0.8660254f;  // 30 degrees
-constexpr float kPlaneOffset = 0.5f;         // from each other's tangent plane, in texels
-constexpr float kReach = 1.8f;               // how much farther apart in the world than in texels neighbours may be
-constexpr float kUnseen = 0.01f;             // differences of so much of the brighter texel are of no interest
+constexpr float kPlaneOffset = 0.5f;  // from each other's tangent plane, in texels
+constexpr float kReach = 1.8f;        // how much farther apart in the world than in texels neighbours may be
+constexpr float kUnseen = 0.01f;      // differences of so much of the brighter texel are of no interest
 constexpr float kTiny = 1e-30f;
 constexpr std::size_t kRowsPerBand = 16;  // at least the largest radius
 
@@ -51,7 +50,7 @@ public:
         for (int dy = -radius_; dy <= radius_; ++dy)
             for (int dx = -radius_; dx <= radius_; ++dx) {
                 if (dx == 0 && dy == 0) continue;
-                const std::uint32_t j = at(texels_.x[i] + dx, texels_.y[i] + dy);
+                const std::uint32_t j = valid_at(texels_.x[i] + dx, texels_.y[i] + dy);
                 if (j == kNone || !are_neighbours(i, j, dx, dy)) continue;
                 const float weight = patch_weight(i, j, dx, dy);
                 if (weight <= 0.0f) continue;
@@ -74,17 +73,13 @@ private:
         }
     }
 
-    [[nodiscard]] std::uint32_t at(int x, int y) const {
-        if (x < 0 || y < 0 || x >= static_cast<int>(texels_.width) || y >= static_cast<int>(texels_.height))
-            return kNone;
-        const std::uint32_t i =
-            texels_.texel_at[static_cast<std::size_t>(y) * texels_.width + static_cast<std::size_t>(x)];
+    [[nodiscard]] std::uint32_t valid_at(int x, int y) const {
+        const std::uint32_t i = texels_.at(x, y);
         return i != kNone && sums_.valid(i) ? i : kNone;
     }
 
     [[nodiscard]] bool are_neighbours(std::size_t i, std::size_t j, int dx, int dy) const {
-        if (texels_.chart[i] != texels_.chart[j]) return false;
-        if (dot(texels_.normal[i], texels_.normal[j]) < kNormalCosine) return false;
+        if (!texels_.on_one_surface(i, j)) return false;
         const Vec3 d = texels_.position[j] - texels_.position[i];
         const auto off_plane = [&](std::size_t t) {
             return std::fabs(dot(texels_.normal[t], d)) > kPlaneOffset * texels_.world_size[t];
@@ -113,8 +108,8 @@ private:
         for (int py = -1; py <= 1; ++py)
             for (int px = -1; px <= 1; ++px) {
                 if (px == 0 && py == 0) continue;
-                const std::uint32_t p = at(texels_.x[i] + px, texels_.y[i] + py);
-                const std::uint32_t q = at(texels_.x[i] + dx + px, texels_.y[i] + dy + py);
+                const std::uint32_t p = valid_at(texels_.x[i] + px, texels_.y[i] + py);
+                const std::uint32_t q = valid_at(texels_.x[i] + dx + px, texels_.y[i] + dy + py);
                 if (p == kNone || q == kNone) continue;
                 if (texels_.chart[p] != texels_.chart[i] || texels_.chart[q] != texels_.chart[i]) continue;
                 sum += distance(guides_[p], guides_[q]);
@@ -142,7 +137,7 @@ private:
             float count = 0.0f;
             for (int dy = -1; dy <= 1; ++dy)
                 for (int dx = -1; dx <= 1; ++dx) {
-                    const std::uint32_t j = at(texels_.x[i] + dx, texels_.y[i] + dy);
+                    const std::uint32_t j = valid_at(texels_.x[i] + dx, texels_.y[i] + dy);
                     if (j == kNone || (j != i && !are_neighbours(i, j, dx, dy))) continue;
                     sum += sums_.variance[j];
                     count += 1.0f;

@@ -19,11 +19,8 @@ constexpr std::array<std::array<int, 2>, 8> kNeighbours{
 template <class Visit>
 void for_each_neighbour(const Lightmap& map, std::uint32_t x, std::uint32_t y, Visit&& visit) {
     for (const auto& [dx, dy] : kNeighbours) {
-        const std::int64_t nx = std::int64_t{x} + dx;
-        const std::int64_t ny = std::int64_t{y} + dy;
-        if (nx < 0 || ny < 0 || nx >= map.width || ny >= map.height) continue;
-        const std::uint32_t texel =
-            map.texel_at[static_cast<std::size_t>(ny) * map.width + static_cast<std::size_t>(nx)];
+        const std::uint32_t texel = texel_at_pixel(
+            map.texel_at, map.width, map.height, static_cast<std::int32_t>(x) + dx, static_cast<std::int32_t>(y) + dy);
         if (texel != kNone) visit(texel);
     }
 }

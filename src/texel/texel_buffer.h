@@ -22,6 +22,16 @@ struct SamplePoint {
     float b1 = 0.0f, b2 = 0.0f;
 };
 
+// What a page's `texel_at` (width * height entries, row by row) says of a pixel, which may lie outside: kNone there.
+inline std::uint32_t texel_at_pixel(std::span<const std::uint32_t> texel_at, std::uint32_t width, std::uint32_t height,
+                                    std::int32_t x, std::int32_t y) {
+    if (x < 0 || y < 0) return kNone;
+    const auto column = static_cast<std::uint32_t>(x), row = static_cast<std::uint32_t>(y);
+    return column < width && row < height ? texel_at[std::size_t{row} * width + column] : kNone;
+}
+
+inline constexpr float kOneSurfaceCosine = 0.8660254f;  // 30 degrees
+
 // One entry per covered texel, in row-major order. A texel is covered if a triangle overlaps its square by more than a
 // touch (1/1024 of a texel); slivers, triangles between texel centres and triangles without area in UV space count. It
 // is owned by one chart: the one with the most sample points in it, the first of equals.
@@ -38,6 +48,14 @@ struct TexelBuffer {
     std::vector<std::uint32_t> texel_at;        // width*height: index of the covered texel there, or kNone
 
     [[nodiscard]] std::size_t size() const { return x.size(); }
+    // The covered texel at a pixel; kNone where there is none, and beyond the page's sides.
+    [[nodiscard]] std::uint32_t at(std::int32_t pixel_x, std::int32_t pixel_y) const {
+        return texel_at_pixel(texel_at, width, height, pixel_x, pixel_y);
+    }
+    // Whether the light of one says something of the other's: one chart, and normals at most 30 degrees apart.
+    [[nodiscard]] bool on_one_surface(std::size_t i, std::size_t j) const {
+        return chart[i] == chart[j] && dot(normal[i], normal[j]) >= kOneSurfaceCosine;
+    }
 };
 
 // Where Hammersley point `s` (0..63) lies in the unit square of a texel: at least 1/128 from its sides, so that no

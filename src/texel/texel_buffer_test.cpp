@@ -110,7 +110,7 @@ TEST(TexelBuffer, AlignedQuadHasWholeTexels) {
         EXPECT_EQ(t.x[i], 2 + i % 5);  // row-major
         EXPECT_EQ(t.y[i], 3 + i / 5);
         EXPECT_EQ(t.valid[i], kAll);
-        EXPECT_EQ(t.texel_at[std::size_t{t.y[i]} * 16 + t.x[i]], i);
+        EXPECT_EQ(t.at(t.x[i], t.y[i]), i);
         EXPECT_NEAR(t.position[i].x, t.x[i] + 0.5f, 1e-5f);
         EXPECT_NEAR(-t.position[i].z, t.y[i] + 0.5f, 1e-5f);
         EXPECT_EQ(t.normal[i], (Vec3{0, 1, 0}));
@@ -119,6 +119,33 @@ TEST(TexelBuffer, AlignedQuadHasWholeTexels) {
     EXPECT_EQ(std::count(t.texel_at.begin(), t.texel_at.end(), kNone), 16 * 16 - 20);
     EXPECT_EQ(baked.context.diagnostics.count("chart-overlap"), 0u);
     expect_points_inside(baked);
+}
+
+TEST(TexelBuffer, PixelsBeyondThePageHaveNoTexel) {
+    FlatPage page;
+    page.width = 8;
+    page.height = 5;
+    page.add_quad({0, 0}, {8, 0}, {0, 5});
+    const BakedPage baked(page);
+    const TexelBuffer& t = baked.texels;
+    ASSERT_EQ(t.size(), 40u);
+    EXPECT_EQ(t.at(7, 4), 39u);
+    for (const auto& [x, y] : {std::pair{-1, 2}, {8, 2}, {2, -1}, {2, 5}})
+        EXPECT_EQ(t.at(x, y), kNone) << x << ' ' << y;
+}
+
+TEST(TexelBuffer, OneSurfaceIsOneChartWithinThirtyDegrees) {
+    const auto tilted = [](float degrees) {
+        const float angle = degrees * 3.14159265f / 180.0f;
+        return Vec3{std::sin(angle), std::cos(angle), 0};
+    };
+    TexelBuffer t;
+    t.chart = {4, 4, 4, 5};
+    t.normal = {tilted(0), tilted(29.9f), tilted(30.1f), tilted(0)};
+    EXPECT_TRUE(t.on_one_surface(0, 1));
+    EXPECT_TRUE(t.on_one_surface(2, 1));
+    EXPECT_FALSE(t.on_one_surface(0, 2));
+    EXPECT_FALSE(t.on_one_surface(0, 3));
 }
 
 // Points in a texel are a net of 64: their share misses the true one by at most a few points where an edge crosses, and
