@@ -1,6 +1,7 @@
 // Based on: Rousselle, Knaus, Zwicker 2012, "Adaptive Rendering with Non-local Means Filtering" (patch distances that
 // allow for the variance of both patches). Different here: the window is cut by the surface, not by auxiliary images;
-// the variance is that of the texels' means, as sampled, smoothed over 3x3; one buffer instead of two halves.
+// the variance is that of the texels' means, as pool_variance() leaves it; one buffer instead of two halves; distances
+// are the same both ways.
 #include "post/denoise.h"
 
 #include <algorithm>
@@ -33,7 +34,6 @@ public:
           radius_(static_cast<int>(options.radius)),
           k2_(options.strength * options.strength) {
         read_guides();
-        smooth_variance();
         find_row_starts();
     }
 
@@ -94,7 +94,9 @@ private:
         float sum = 0.0f;
         for (std::size_t c = 0; c < 3; ++c) {
             const float d = p.irradiance[c] - q.irradiance[c];
-            const float noise = p.variance[c] + std::min(p.variance[c], q.variance[c]);
+            // The same both ways: with the lesser variance for the neighbour's, as published, a bright texel takes from
+            // dark ones that do not take from it, and rare light gets lost.
+            const float noise = p.variance[c] + q.variance[c];
             const float level = std::max(p.irradiance[c], q.irradiance[c]);
             const float unseen = kUnseen * kUnseen * level * level + kTiny;
             sum += (d * d - noise) / (unseen + k2_ * (p.variance[c] + q.variance[c]));
@@ -126,23 +128,7 @@ private:
         for (std::size_t i = 0; i < guides_.size(); ++i) {
             if (!sums_.valid(i)) continue;
             for (const LayerMoments& layer : sums_.layers[i]) guides_[i].irradiance += layer.irradiance;
-        }
-    }
-
-    // A texel that rare light has missed states too little variance: it takes that of its surroundings.
-    void smooth_variance() {
-        for (std::size_t i = 0; i < guides_.size(); ++i) {
-            if (!sums_.valid(i)) continue;
-            Vec3 sum{};
-            float count = 0.0f;
-            for (int dy = -1; dy <= 1; ++dy)
-                for (int dx = -1; dx <= 1; ++dx) {
-                    const std::uint32_t j = valid_at(texels_.x[i] + dx, texels_.y[i] + dy);
-                    if (j == kNone || (j != i && !are_neighbours(i, j, dx, dy))) continue;
-                    sum += sums_.variance[j];
-                    count += 1.0f;
-                }
-            guides_[i].variance = sum / count;
+            guides_[i].variance = sums_.variance[i];
         }
     }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <random>
 
+#include "path/pooled_variance.h"
+
 namespace lumel {
 namespace {
 
@@ -47,6 +49,11 @@ struct NoisyPage {
         for (std::size_t i = 0; i < truth.size(); ++i) sum += std::pow(value(i) - truth[i], 2);
         return sum / static_cast<double>(truth.size());
     }
+    [[nodiscard]] double mean() const {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < truth.size(); ++i) sum += static_cast<double>(value(i));
+        return sum / static_cast<double>(truth.size());
+    }
 };
 
 Status run(NoisyPage& page, unsigned threads = 1) {
@@ -60,6 +67,35 @@ TEST(Denoise, TakesMostOfTheNoiseFromEvenLight) {
     ASSERT_TRUE(run(page).ok());
     // 225 texels of equal weight would divide it by 225; weights that follow the noise leave a share of that.
     EXPECT_LT(page.mean_squared_error(), before / 20);
+}
+
+// Light that few samples find: each texel has two halves of 32 samples, of which one in `rarity` brings 64 times
+// `flash`, so that it shows as `flash` in the texel; the rest is even. The variance is what the bake would state.
+NoisyPage page_of_rare_light(double rarity, float even, float flash) {
+    NoisyPage page(128, 128, 0.0f, [&](int, int) { return even + 64.0f * flash / static_cast<float>(rarity); });
+    std::mt19937 random(11);
+    std::binomial_distribution<int> hits(32, 1.0 / rarity);
+    for (std::size_t i = 0; i < page.sums.size(); ++i) {
+        const auto a = static_cast<float>(hits(random)), b = static_cast<float>(hits(random));
+        const float share = (a + b) / 64.0f;
+        page.sums.layers[i][1].irradiance = Vec3{1, 1, 1} * (even + flash * (a + b));
+        page.sums.half_difference[i] = Vec3{1, 1, 1} * (2.0f * flash * (a - b));
+        page.sums.variance[i] = Vec3{1, 1, 1} * (64.0f * 64.0f * flash * flash * share * (1.0f - share) / 63.0f);
+    }
+    Context context(1);
+    EXPECT_TRUE(pool_variance(page.texels, page.sums, context).ok());
+    return page;
+}
+
+// Mostly dark: of 64 samples each, some half, a fifth, one in 20 and one in 50 texels have met the light.
+TEST(Denoise, TakesMostOfTheNoiseFromRareLightAndKeepsItsMean) {
+    for (const double rarity : {100.0, 320.0, 1280.0, 3200.0}) {
+        NoisyPage page = page_of_rare_light(rarity, 0.1f, 0.1f);
+        const double before = page.mean_squared_error(), mean = page.mean();
+        ASSERT_TRUE(run(page).ok());
+        EXPECT_LT(page.mean_squared_error(), before / (5 * 5)) << rarity;
+        EXPECT_NEAR(page.mean(), mean, 0.015 * mean) << rarity;
+    }
 }
 
 TEST(Denoise, KeepsAnEdgeThatIsNoNoise) {
