@@ -65,12 +65,12 @@ void for_each_texel(const Scene& scene, const BakeOptions& options, Visit&& visi
 class Leak : public testing::TestWithParam<std::tuple<Wall, Integrator, bool>> {};
 
 TEST_P(Leak, NoLightComesThroughAWall) {
-    const auto& [wall, integrator, denoise] = GetParam();
+    const Wall& wall = std::get<0>(GetParam());
     BakeOptions options;
     options.texels_per_metre = 1.0 / static_cast<double>(kTexel);
     options.samples = 64;
-    options.integrator = integrator;
-    options.denoise = denoise;
+    options.integrator = std::get<1>(GetParam());
+    options.denoise = std::get<2>(GetParam());
     double bright = 0.0, count = 0.0, dark = 0.0, brightest = 0.0;
     Vec3 worst{};
     for_each_texel(two_rooms(wall.thickness), options, [&](Vec3 at, float light) {
