@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "flux_integrator.h"
 #include "load.h"
+#include "path/gather_page.h"
 #include "path/light_cells.h"
 #include "path/pooled_variance.h"
 

@@ -11,6 +11,7 @@
 #include "io/image_io.h"
 #include "light/light_set.h"
 #include "load.h"
+#include "path/gather_page.h"
 #include "path/path_integrator.h"
 
 namespace lumel::bench {

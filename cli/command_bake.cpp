@@ -25,10 +25,9 @@ namespace {
 
 struct Options {
     std::string scene, output, resolution, max_memory, progress;
-    std::string preset = "medium", uv1 = "automatic", integrator = "auto", guide = "auto", stop = "fixed",
-                denoise = "auto";
+    std::string preset = "medium", uv1 = "automatic", integrator = "auto", guide = "auto", stop, denoise = "auto";
     std::uint32_t views = 2, view_samples = 32;
-    std::optional<double> error, confidence;
+    std::optional<double> error, confidence, time;
     BakeOptions values;
     LightOptions light;
 };
@@ -56,18 +55,26 @@ Result<BakeOptions> read_options(const Options& options) {
               : options.uv1 == "ignore" ? Uv1Choice::ignore
                                         : Uv1Choice::automatic;
     if (options.denoise != "auto") out.denoise = options.denoise == "on";
-    if (options.stop != "flux" && (options.error || options.confidence))
+    // An error to reach is asked for by its name alone.
+    const std::string stop = !options.stop.empty() ? options.stop : options.error ? "error" : "fixed";
+    if (stop == "fixed" && (options.error || options.confidence))
         return Error{ErrorCode::usage,
-                     std::string(options.error ? "--error" : "--confidence") + " needs --stop flux",
+                     options.error ? "--error does not go with --stop fixed" : "--confidence needs --error",
                      {},
                      "a fixed number of samples has no error to stop at"};
+    if (stop != "fixed" && options.time)
+        return Error{ErrorCode::usage,
+                     "--time does not go with --error or --stop " + stop,
+                     {},
+                     "--time finds the number of samples that all texels take; --samples bounds that of --error"};
+    out.time_seconds = options.time.value_or(out.time_seconds);
     out.error = options.error.value_or(out.error);
     out.confidence = options.confidence.value_or(out.confidence);
     out.integrator = options.integrator == "cells"   ? Integrator::cells
                      : options.integrator == "paths" ? Integrator::paths
                                                      : Integrator::automatic;
     out.guide = options.guide != "off";
-    out.stop = options.stop == "flux" ? StopRule::flux : StopRule::fixed;
+    out.stop = stop == "flux" ? StopRule::flux : stop == "error" ? StopRule::error : StopRule::fixed;
     return out;
 }
 
@@ -123,6 +130,18 @@ void print_files(const std::filesystem::path& folder, std::uint32_t views) {
     if (views > 0)
         std::printf("%s (path-traced beside baked), ", (folder / (kViewStem + std::string("*.png"))).c_str());
     std::printf("%s\n", (folder / "preview_atlas_*.png").c_str());
+}
+
+// What was reached of --error and --time.
+void print_reached(const BakeReport& report, const BakeOptions& options) {
+    if (options.time_seconds > 0.0)
+        std::printf("%u samples per texel fitted the time: --samples %u gives the same bits\n",
+                    report.samples_per_texel, report.samples_per_texel);
+    if (!std::isfinite(report.share_within_error)) return;
+    std::printf("%.1f %% of the texels are within %g at confidence %g; %.0f samples per texel of at most %u\n",
+                100.0 * report.share_within_error, options.error, options.confidence,
+                static_cast<double>(report.samples) / static_cast<double>(std::max<std::uint64_t>(1, report.texels)),
+                report.samples_per_texel);
 }
 
 void print_summary(const BakeReport& report, const std::string& folder) {
@@ -182,6 +201,7 @@ Status run(const Options& options) {
     LUMEL_TRY_STATUS(writer.commit());
     run_context.finish();
     print_summary(report, options.output);
+    print_reached(report, bake_options);
     print_files(options.output, options.views);
     return success();
 }
@@ -233,16 +253,21 @@ Run add_bake(CLI::App& app) {
                    "auto (with cells: paths follow the light that nearby texels have seen) or off")
         ->check(CLI::IsMember({"auto", "off"}))
         ->group(transport);
-    app.add_option(
-           "--stop", options->stop,
-           "fixed: every texel takes --samples; flux: each stops at --error (published rule, biased on rare light)")
-        ->check(CLI::IsMember({"fixed", "flux"}))
+    app.add_option("--time", options->time,
+                   "Seconds to end within (files and views come on top): as many samples as fit, at most --samples")
+        ->check(between(1e-3, 1e7))
         ->group(transport);
-    app.add_option("--error", options->error, "Relative error at which --stop flux stops")
+    app.add_option("--error", options->error,
+                   "Relative error of a texel to stop at, for example 0.05; --samples bounds its paths")
         ->check(between(1e-6, 10.0))
         ->group(transport);
-    app.add_option("--confidence", options->confidence, "Confidence of --error")
+    app.add_option("--confidence", options->confidence, "Confidence of --error (0.95)")
         ->check(between(0.5, 0.9999))
+        ->group(transport);
+    app.add_option("--stop", options->stop,
+                   "fixed: every texel takes --samples; error: each stops at --error by what its neighbours measured; "
+                   "flux: by its own samples (published rule, biased on rare light)")
+        ->check(CLI::IsMember({"fixed", "error", "flux"}))
         ->group(transport);
     app.add_flag("--two-sided", values.two_sided, "Light both sides of double-sided surfaces")->group(transport);
     app.add_option("--max-memory", options->max_memory, "Ceiling such as 4G; pages shrink to fit it")

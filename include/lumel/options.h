@@ -21,6 +21,11 @@ struct PresetValues {
 };
 PresetValues preset_values(Preset preset);
 
+struct BakeOptions;
+// Samples per texel that are taken at most. Where neither --samples says so nor all texels take the same, eight times
+// those of the preset.
+std::uint32_t sample_budget(const BakeOptions& options);
+
 enum class Uv1Choice : std::uint8_t { automatic, scene, mesh, ignore };
 
 // Which layers the lightmap files sum; the master always keeps all.
@@ -31,6 +36,7 @@ struct Include {
 // How the number of samples of a texel is decided.
 enum class StopRule : std::uint8_t {
     fixed,  // every texel takes `samples`
+    error,  // each texel until `error` at `confidence`, by what its neighbours have measured; `samples` is the budget
     flux,   // Frostbite 2018: every 10 % of the budget, stop where the texel's own standard error is within `error` of
             // its mean at `confidence`. Biased dark on rare-event light; kept as the published baseline
 };
@@ -74,15 +80,16 @@ struct BakeOptions {
     double direct_scale = 1.0, indirect_scale = 1.0;  // of the layers (direct and sky; indirect), >= 0
     bool two_sided = false;                           // bake both sides of double-sided surfaces
     // Transport
-    std::uint32_t samples = 0;   // paths per texel, 1..2^24; 0: the preset's
+    std::uint32_t samples = 0;   // paths per texel, 1..2^24; 0: sample_budget()
     std::uint32_t bounces = 64;  // 0 = direct light only, up to 1024
     std::uint64_t seed = 1;
     double ao_distance = 0.0;  // metres; 0: a tenth of the scene's diagonal
     Integrator integrator = Integrator::automatic;
     bool guide = true;  // with cells: first rays follow the light that texels nearby have seen
     StopRule stop = StopRule::fixed;
-    double error = 0.05;       // of StopRule::flux: relative
-    double confidence = 0.95;  // of StopRule::flux: 0.5..0.9999
+    double error = 0.05;        // of StopRule::error and flux: half of the interval, relative to a texel's irradiance
+    double time_seconds = 0.0;  // the samples are as many as end within it, at most `samples`; 0: no such limit
+    double confidence = 0.95;   // that the interval contains the truth: 0.5..0.9999
     // Machine
     unsigned threads = 0;                // 0: one per hardware thread
     std::uint64_t max_memory_bytes = 0;  // 0: no ceiling

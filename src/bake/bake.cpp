@@ -1,6 +1,7 @@
 // The order of the stages. Nothing else knows it.
 #include "lumel/bake.h"
 
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -8,6 +9,7 @@
 #include <utility>
 
 #include "bake/memory.h"
+#include "bake/sample_plan.h"
 #include "bake/stage_timer.h"
 #include "base/denormals.h"
 #include "base/memory_use.h"
@@ -17,6 +19,7 @@
 #include "chart/chart_set.h"
 #include "light/light_set.h"
 #include "math/normal_quantile.h"
+#include "path/gather_page.h"
 #include "path/light_cells.h"
 #include "path/path_integrator.h"
 #include "path/pooled_variance.h"
@@ -52,23 +55,13 @@ ChartOptions chart_options(const BakeOptions& options) {
 
 PathOptions path_options(const BakeOptions& options, const WorldGeometry& geometry) {
     PathOptions out = transport_options(options);
-    out.samples = options.samples ? options.samples : preset_values(options.preset).samples;
+    out.samples = sample_budget(options);
     const float diagonal = length(geometry.bounds_max - geometry.bounds_min);
     out.ao_distance = options.ao_distance > 0.0 ? static_cast<float>(options.ao_distance) : 0.1f * diagonal;
     out.two_sided = options.two_sided;
     out.stop = options.stop;
     out.relative_error_of_mean = options.error / normal_quantile(0.5 + 0.5 * options.confidence);
     return out;
-}
-
-constexpr std::uint32_t kFewestSamplesForCells = 32;  // fewer cost less than the cells would
-constexpr std::uint32_t kFewestBouncesForCells = 8;   // fewer are counted to the last, which cells do not
-
-bool uses_cells(const BakeOptions& options, const PathOptions& path) {
-    if (path.bounces == 0) return false;
-    if (options.integrator == Integrator::automatic)
-        return path.samples >= kFewestSamplesForCells && path.bounces >= kFewestBouncesForCells;
-    return options.integrator == Integrator::cells;
 }
 
 constexpr std::uint32_t kSmallestPage = 256;
@@ -111,25 +104,37 @@ Result<Atlas> make_atlas_within_memory(const Scene& scene, const WorldGeometry& 
 
 // Running totals over all pages for the report's error estimate.
 struct Totals {
+    double relative_error = 0.0;  // of a texel's mean that is to be reached; 0: none
     double variance = 0.0, irradiance[3] = {0, 0, 0};
     std::uint64_t texels = 0, measured = 0;  // measured: of more than one path, so that they have a variance
+    std::uint64_t within = 0;                // of these, at relative_error
 
     void add(const Lightmap& map, const std::array<bool, kLayerCount>& included) {
         for (std::size_t i = 0; i < map.texels.size(); ++i) {
             if (map.coverage[i] != Coverage::baked) continue;
             ++texels;
             measured += map.texels.count[i] > 1 ? 1 : 0;
+            Vec3 mean{}, error{};
             for (std::size_t c = 0; c < 3; ++c) {
                 variance += static_cast<double>(map.texels.variance[i][c]);
+                error[c] = std::sqrt(map.texels.variance[i][c]);
                 for (std::size_t l = 0; l < kLayerCount; ++l)
-                    if (included[l]) irradiance[c] += static_cast<double>(map.texels.layers[i][l].irradiance[c]);
+                    if (included[l]) mean[c] += map.texels.layers[i][l].irradiance[c];
+                irradiance[c] += static_cast<double>(mean[c]);
             }
+            // Channels err together, for it is the same light that they have met or missed.
+            within += map.texels.count[i] > 1 && static_cast<double>(luminance(error)) <=
+                                                     relative_error * static_cast<double>(luminance(mean))
+                          ? 1
+                          : 0;
         }
     }
     [[nodiscard]] bool is_black() const { return irradiance[0] + irradiance[1] + irradiance[2] == 0.0; }
 
     void store(BakeReport& report) const {
+        report.share_within_error = std::numeric_limits<double>::quiet_NaN();
         if (texels == 0) return;
+        if (relative_error > 0.0) report.share_within_error = static_cast<double>(within) / static_cast<double>(texels);
         const double n = static_cast<double>(texels);
         double mean = 0.0;
         for (std::size_t c = 0; c < 3; ++c) {
@@ -220,12 +225,29 @@ Status bake_pages(const PageBaker& baker, const BakeSink& sink, Totals& totals) 
     return success();
 }
 
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+// For options.time_seconds since `started`: page 0 is rasterised for the trial, and again when its turn has come.
+Result<std::uint32_t> samples_in_time(const Scene& scene, const ChartSet& charts, const Atlas& atlas,
+                                      const Transport& transport, const BakeOptions& options, const PathOptions& path,
+                                      Clock::time_point started, Context& context) {
+    const Clock::time_point raster = Clock::now();
+    const auto by_page = triangles_by_page(scene, transport.geometry, charts, atlas);
+    LUMEL_TRY(const TexelBuffer texels,
+              rasterize_page(scene, transport.geometry, charts, atlas, 0, by_page[0], context));
+    const TimePlan plan{charts, atlas, texels, seconds_since(started), seconds_since(raster)};
+    return samples_within_time(plan, options, transport, path, context);
+}
+
 }  // namespace
 
 Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const BakeSink& sink, Context& context) {
     std::optional<FlushDenormals> flush(std::in_place);  // in what this thread computes by itself, too
     BakeReport report;
     report.threads = context.threads();
+    const auto started = std::chrono::steady_clock::now();
 
     LUMEL_TRY_STATUS(validate(scene));
     LUMEL_TRY(const WorldGeometry geometry, flatten(scene, context));
@@ -240,7 +262,7 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
                      "give it a sky, for example --sky 1,1,1, or a sun with --sun-direction"};
 
     PathOptions path = path_options(options, geometry);
-    std::uint32_t cell_samples = uses_cells(options, path) ? path.samples : 0;
+    std::uint32_t cell_samples = samples_for_cells(options, path);
     ChartSet charts;
     Atlas atlas;
     {
@@ -279,16 +301,25 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
         LUMEL_TRY(tracer, make_embree_tracer(geometry, surfaces, context));
     }
     Transport transport{scene, geometry, surfaces, lights, *tracer};
+    if (options.time_seconds > 0.0) {
+        const StageTimer timer(report, "trial");
+        LUMEL_TRY(path.samples, samples_in_time(scene, charts, atlas, transport, options, path, started, context));
+        if (cell_samples > 0) cell_samples = samples_for_cells(options, path);
+    }
+    report.samples_per_texel = path.samples;
     std::optional<SurfaceCells> cells;
     if (cell_samples > 0) {
         const StageTimer timer(report, "cells");
-        LUMEL_TRY(cells, make_lit_cells(charts, atlas, transport, path, context));
+        PathOptions to_cells = path;
+        to_cells.samples = cell_samples;
+        LUMEL_TRY(cells, make_lit_cells(charts, atlas, transport, to_cells, context));
         transport.cells = &*cells;
         path.guided = options.guide;
         report.cells = cells->size();
         report.trace_wall_seconds += timer.seconds();
     }
     Totals totals;
+    if (options.stop != StopRule::fixed) totals.relative_error = path.relative_error_of_mean;
     LUMEL_TRY_STATUS(bake_pages({scene, charts, atlas, transport, options, path, report, context}, sink, totals));
     for (const PageReport& page : report.pages) {
         report.texels += page.texels;

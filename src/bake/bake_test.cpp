@@ -9,6 +9,7 @@
 #include "base/hash.h"
 #include "chart/chart_set.h"
 #include "lumel/bake.h"
+#include "path/gather_page.h"
 #include "path/path_integrator.h"
 #include "post/lightmap.h"
 #include "support/traced_scene.h"
@@ -85,6 +86,37 @@ TEST(Bake, TheSameBitsForTheSeedsStopRule) {
     EXPECT_EQ(bake_hash(1, options, &report), bake_hash(2, options));
     EXPECT_LT(report.samples, report.texels * 640) << "no texel stopped early";
     EXPECT_GE(report.samples, report.texels * 64) << "the rule is looked at no sooner than at 10 %";
+}
+
+TEST(Bake, TheSameBitsForTexelsThatStopAtAnError) {
+    BakeOptions options = small_options();
+    options.samples = 1024;
+    options.stop = StopRule::error;
+    options.error = 0.1;
+    BakeReport report;
+    EXPECT_EQ(bake_hash(1, options, &report), bake_hash(2, options));
+    EXPECT_LT(report.samples, report.texels * 1024) << "no texel stopped early";
+    EXPECT_GT(report.share_within_error, 0.5);
+    EXPECT_LE(report.share_within_error, 1.0);
+    options.stop = StopRule::fixed;
+    options.samples = 64;
+    bake_hash(1, options, &report);
+    EXPECT_TRUE(std::isnan(report.share_within_error)) << "nothing was to be reached";
+}
+
+TEST(Bake, TheSamplesThatFittedATimeGiveTheSameBits) {
+    BakeOptions options = small_options();
+    options.samples = 512;
+    options.time_seconds = 1e-3;
+    BakeReport report;
+    const std::string shortest = bake_hash(2, options, &report);
+    EXPECT_EQ(report.samples_per_texel, 32u);
+    options.time_seconds = 1e6;
+    bake_hash(2, options, &report);
+    EXPECT_EQ(report.samples_per_texel, 512u) << "the samples asked for are the most";
+    options.time_seconds = 0.0;
+    options.samples = 32;
+    EXPECT_EQ(bake_hash(1, options), shortest);
 }
 
 TEST(Bake, AnySplitOfTheTexelsGivesTheSameBits) {

@@ -77,6 +77,12 @@ Status apply_lighting(Scene& scene, const BakeOptions& options) {
     return validate_lighting(scene);
 }
 
+std::uint32_t sample_budget(const BakeOptions& options) {
+    if (options.samples != 0) return options.samples;
+    const std::uint32_t samples = preset_values(options.preset).samples;
+    return options.stop == StopRule::error || options.time_seconds > 0.0 ? 8 * samples : samples;
+}
+
 PresetValues preset_values(Preset preset) {
     switch (preset) {
         case Preset::preview: return {0.25e6, 256, true};

@@ -158,7 +158,10 @@ struct BakeWriter::Impl {
     }
 
     Status write_previews() {
-        const float exposure = exposure_of(previews), most = most_samples(previews);
+        // Where texels stop by themselves the heat is their share of the budget.
+        const float exposure = exposure_of(previews), most = options.stop == StopRule::fixed
+                                                                 ? most_samples(previews)
+                                                                 : static_cast<float>(sample_budget(options));
         for (std::uint32_t p = 0; p < previews.size(); ++p) {
             const Image& image = previews[p].irradiance;
             LUMEL_TRY_STATUS(

@@ -176,9 +176,10 @@ Json options_json(const ManifestInput& in) {
     const BakeOptions& options = in.options;
     static constexpr const char* kPresets[] = {"preview", "medium", "production"};
     static constexpr const char* kIntegrators[] = {"auto", "cells", "paths"};
+    static constexpr const char* kStopRules[] = {"fixed", "error", "flux"};
     static constexpr const char* kUv1[] = {"automatic", "scene", "mesh", "ignore"};
     return {{"preset", kPresets[static_cast<std::size_t>(options.preset)]},
-            {"samples", options.samples != 0 ? options.samples : preset_values(options.preset).samples},
+            {"samples", sample_budget(options)},
             {"bounces", options.bounces},
             {"seed", options.seed},
             {"resolution", {options.resolution_width, options.resolution_height}},
@@ -191,7 +192,10 @@ Json options_json(const ManifestInput& in) {
             {"ao_distance", options.ao_distance},
             {"integrator", kIntegrators[static_cast<std::size_t>(options.integrator)]},
             {"guide", options.guide},
-            {"stop", options.stop == StopRule::flux ? "flux" : "fixed"},
+            {"stop", kStopRules[static_cast<std::size_t>(options.stop)]},
+            {"error", options.error},
+            {"confidence", options.confidence},
+            {"time_seconds", options.time_seconds},
             {"sky", sky_json(options.sky, in.sky_hash, in.folder)},
             {"sun", sun_json(options.sun)},
             {"direct_scale", options.direct_scale},
@@ -225,7 +229,9 @@ Json report_json(const ManifestInput& in, const Diagnostics& diagnostics) {
     out["threads"] = report.threads;
     out["peak_memory_bytes"] = report.peak_memory_bytes;
     out["predicted_memory_bytes"] = report.predicted_memory_bytes;
+    out["samples_per_texel"] = report.samples_per_texel;
     out["estimated_nrmse"] = number(report.estimated_nrmse);
+    out["share_within_error"] = number(report.share_within_error);
     out["mean_irradiance"] = report.mean_irradiance;
     out["warnings"] = warnings_json(diagnostics);
     return out;

@@ -1,11 +1,11 @@
-// The texels of a page, on all threads.
+#include "path/gather_page.h"
+
 #include <array>
 
 #include "base/cancelled.h"
 #include "base/check.h"
 #include "base/parallel.h"
-#include "path/path_integrator.h"
-#include "path/texel_blocks.h"
+#include "base/try.h"
 
 namespace lumel {
 
@@ -44,18 +44,15 @@ void clear_outside(RadianceSums& sums, std::size_t begin, std::size_t end) {
 
 }  // namespace
 
-Result<RadianceSums> gather_page(const TexelBuffer& texels, const ChartSet& charts, const Atlas& atlas,
-                                 const Transport& transport, const PathOptions& options, std::size_t first,
-                                 std::size_t count, Context& context, std::size_t room) {
-    LUMEL_CHECK(first + count <= texels.size(), first, count, texels.size());
+Result<RadianceSums> gather_blocks(const TexelBlocks& blocks, const TexelBuffer& texels, const ChartSet& charts,
+                                   const Atlas& atlas, const Transport& transport, const PathOptions& options,
+                                   Context& context, std::size_t room) {
     RadianceSums sums;
     sums.reserve(room);
     sums.resize(texels.size());
     const PathIntegrator integrator(transport, options);
     std::vector<PathIntegrator::WorkspacePtr> workspaces(context.threads());
     for (auto& workspace : workspaces) workspace = integrator.make_workspace();
-
-    const TexelBlocks blocks = make_texel_blocks(texels, first, first + count);
     std::vector<BlockSites> sites(context.threads());
     const std::uint64_t rays_before = transport.tracer.statistics().rays;
     const bool done = parallel_for(
@@ -67,6 +64,15 @@ Result<RadianceSums> gather_page(const TexelBuffer& texels, const ChartSet& char
         },
         "trace", [&] { return transport.tracer.statistics().rays - rays_before; });
     if (!done || context.cancelled()) return cancelled_error();
+    return sums;
+}
+
+Result<RadianceSums> gather_page(const TexelBuffer& texels, const ChartSet& charts, const Atlas& atlas,
+                                 const Transport& transport, const PathOptions& options, std::size_t first,
+                                 std::size_t count, Context& context, std::size_t room) {
+    LUMEL_CHECK(first + count <= texels.size(), first, count, texels.size());
+    const TexelBlocks blocks = make_texel_blocks(texels, first, first + count);
+    LUMEL_TRY(RadianceSums sums, gather_blocks(blocks, texels, charts, atlas, transport, options, context, room));
     clear_outside(sums, first, first + count);
     return sums;
 }

@@ -7,6 +7,7 @@
 
 #include "base/check.h"
 #include "math/sampler.h"
+#include "path/adaptive_samples.h"
 #include "path/enclosed_points.h"
 #include "path/path_integrator.h"
 #include "path/path_workspace.h"
@@ -15,7 +16,7 @@
 namespace lumel {
 namespace {
 
-constexpr std::uint32_t kFirstRound = 8, kRoundFactor = 2;
+constexpr std::uint32_t kFirstRound = 8;  // each is followed by as many samples as there are
 constexpr std::uint32_t kFewestSamplesForGuide = 64;
 
 }  // namespace
@@ -43,7 +44,8 @@ void PathIntegrator::begin_texel(const GatherSite& site, Workspace& w, TexelStat
     if (texel.both_sides) find_sunlit(std::span(texel.back_surfaces).first(n), false, w);
 }
 
-void PathIntegrator::gather_samples(std::uint32_t first, std::uint32_t last, Workspace& w, TexelState& texel) const {
+void PathIntegrator::gather_samples(std::uint32_t first, std::uint32_t last, bool learning, Workspace& w,
+                                    TexelState& texel) const {
     const HemisphereGuide* const guide = w.guide ? &*w.guide : nullptr;
     for (std::uint32_t base = first, lanes = 0; base < last; base += lanes) {
         lanes = std::min(static_cast<std::uint32_t>(kWavefrontLanes), last - base);
@@ -62,7 +64,7 @@ void PathIntegrator::gather_samples(std::uint32_t first, std::uint32_t last, Wor
         texel.sink.begin(starts, texel.both_sides ? 2.0f : 1.0f);
         trace_paths(starts, w, texel.sink, guide);
         texel.sink.end();
-        if (!options_.guided) continue;
+        if (!learning) continue;
         for (std::uint32_t lane = 0; lane < lanes; ++lane)
             w.guide_statistics.add((base + lane) & 1u, w.first_draw[lane].point, w.first_draw[lane].density,
                                    w.first_radiance[lane]);
@@ -72,7 +74,7 @@ void PathIntegrator::gather_samples(std::uint32_t first, std::uint32_t last, Wor
 void PathIntegrator::gather_until_converged(Workspace& w, TexelState& texel) const {
     const std::uint32_t step = (options_.samples + 9) / 10;
     for (std::uint32_t first = 0; first < options_.samples; first += step) {
-        gather_samples(first, std::min(first + step, options_.samples), w, texel);
+        gather_samples(first, std::min(first + step, options_.samples), false, w, texel);
         if (texel.sink.converged(options_.relative_error_of_mean)) return;
     }
 }
@@ -82,28 +84,48 @@ void PathIntegrator::gather_texels(std::span<const GatherSite> sites, std::span<
     LUMEL_CHECK(sites.size() == indices.size() && sites.size() <= kMostTexelsTogether, sites.size(), indices.size());
     w.texels.clear();
     for (const GatherSite& site : sites) begin_texel(site, w, w.texels.emplace_back(options_));
-    w.guide.reset();
-    w.guide_statistics.clear();
     if (options_.stop == StopRule::flux) {
         for (TexelState& texel : w.texels) {
             if (context.cancelled()) return;
             gather_until_converged(w, texel);
         }
-    } else {
-        // A guide is of one side.
-        const bool guided = options_.guided && options_.samples >= kFewestSamplesForGuide &&
-                            std::ranges::none_of(w.texels, &TexelState::both_sides);
-        std::uint32_t last = guided ? kFirstRound : options_.samples;
-        for (std::uint32_t first = 0; first < options_.samples; first = last, last *= kRoundFactor) {
-            last = std::min(last, options_.samples);
-            if (first > 0) w.guide = w.guide_statistics.learn();
-            for (TexelState& texel : w.texels) {
-                if (context.cancelled()) return;
-                gather_samples(first, last, w, texel);
-            }
-        }
+    } else if (!gather_rounds(w, context)) {
+        return;
     }
     for (std::size_t k = 0; k < sites.size(); ++k) w.texels[k].sink.store(out, indices[k]);
+}
+
+bool PathIntegrator::gather_rounds(Workspace& w, const Context& context) const {
+    const std::uint32_t budget = options_.samples;
+    const bool adaptive = options_.stop == StopRule::error;
+    // A guide is of one side.
+    const bool guided =
+        options_.guided && budget >= kFewestSamplesForGuide && std::ranges::none_of(w.texels, &TexelState::both_sides);
+    w.guide.reset();
+    w.guide_statistics.clear();
+    std::array<std::uint32_t, kMostTexelsTogether> wanted;
+    std::array<TexelProgress, kMostTexelsTogether> progress;
+    wanted.fill(budget);
+    std::uint32_t last = guided || adaptive ? kFirstRound : budget;
+    for (std::uint32_t first = 0; first < budget; first = last, last *= 2) {
+        last = std::min(last, budget);
+        if (guided && first > 0) w.guide = w.guide_statistics.learn();
+        if (adaptive && first >= kFewestAdaptiveSamples) {
+            for (std::size_t k = 0; k < w.texels.size(); ++k) progress[k] = w.texels[k].sink.progress();
+            adaptive_samples(std::span(progress).first(w.texels.size()), options_.relative_error_of_mean, budget,
+                             std::span(wanted).first(w.texels.size()));
+        }
+        bool any = false;
+        for (std::size_t k = 0; k < w.texels.size(); ++k) {
+            TexelState& texel = w.texels[k];
+            const std::uint32_t from = texel.sink.traced(), to = std::min(last, wanted[k]);
+            if (context.cancelled()) return false;
+            if (from < to) gather_samples(from, to, guided, w, texel);
+            any = any || wanted[k] > last;
+        }
+        if (!any) break;
+    }
+    return true;
 }
 
 }  // namespace lumel

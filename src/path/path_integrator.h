@@ -38,7 +38,7 @@ struct PathOptions {
     bool two_sided = false;
     bool guided = false;  // first rays follow what texels nearby have seen (path/hemisphere_guide.h)
     StopRule stop = StopRule::fixed;
-    double relative_error_of_mean = 0.0;  // StopRule::flux: error / z(confidence)
+    double relative_error_of_mean = 0.0;  // StopRule::error and flux: error / z(confidence)
     // Artist's factors of the layers, and which of them the total (its variance, pictures) sums.
     std::array<float, kLayerCount> layer_scale{1, 1, 1};
     std::array<bool, kLayerCount> included{true, true, true};
@@ -116,8 +116,12 @@ public:
 private:
     struct TexelState;
     void begin_texel(const GatherSite& site, Workspace& workspace, TexelState& texel) const;
-    // Samples first to last - 1 of a texel.
-    void gather_samples(std::uint32_t first, std::uint32_t last, Workspace& workspace, TexelState& texel) const;
+    // Samples first to last - 1 of a texel. `learning`: for the guide, too.
+    void gather_samples(std::uint32_t first, std::uint32_t last, bool learning, Workspace& workspace,
+                        TexelState& texel) const;
+    // All samples of the workspace's texels, each round as many as there were before; between them the guide is learned
+    // and the samples are allotted. False where `context` was cancelled.
+    bool gather_rounds(Workspace& workspace, const Context& context) const;
     // By Frostbite's rule.
     void gather_until_converged(Workspace& workspace, TexelState& texel) const;
     // Fills in `sunlit`, where knows_point_suns_.
@@ -134,12 +138,5 @@ private:
     // as many samples as points, and no surface lets light through by chance.
     bool knows_point_suns_;
 };
-
-// Stage: all texels of a page. `first`, `count`: the range of texels to do (the rest of the sums stay zero); any split
-// gives the same bits. Error: cancelled.
-// `room`: texels that the sums can grow to without being moved.
-Result<RadianceSums> gather_page(const TexelBuffer& texels, const ChartSet& charts, const Atlas& atlas,
-                                 const Transport& transport, const PathOptions& options, std::size_t first,
-                                 std::size_t count, Context& context, std::size_t room = 0);
 
 }  // namespace lumel

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "math/constants.h"
+#include "path/adaptive_samples.h"
 #include "path/path_integrator.h"
 #include "path/radiance_sums.h"
 #include "sh/basis.h"
@@ -80,6 +81,19 @@ public:
             luminance_.add(static_cast<double>(luminance(sample_[lane])), counts);
             ++traced_;
         }
+    }
+
+    [[nodiscard]] std::uint32_t traced() const { return traced_; }
+
+    // What others of its block may know of it.
+    [[nodiscard]] TexelProgress progress() const {
+        TexelProgress out;
+        out.samples = traced_;
+        out.valid = halves_[0].count > 0.0 && halves_[1].count > 0.0 && 2.0 * count_ > traced_;
+        if (!out.valid) return out;
+        out.mean = luminance_.mean(count_);
+        out.half_difference = luminance_of(halves_[0]) - luminance_of(halves_[1]);
+        return out;
     }
 
     // Frostbite's rule on the texel's own luminance.
@@ -157,6 +171,11 @@ private:
         double count = 0.0;
         [[nodiscard]] double mean(std::size_t c) const { return sum[c] / count; }
     };
+
+    static double luminance_of(const Half& half) {
+        return static_cast<double>(luminance(Vec3{static_cast<float>(half.mean(0)), static_cast<float>(half.mean(1)),
+                                                  static_cast<float>(half.mean(2))}));
+    }
 
     float ao_distance_;
     std::array<float, kLayerCount> scale_;

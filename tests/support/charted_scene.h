@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "path/gather_page.h"
 #include "support/traced_scene.h"
 #include "texel/texel_buffer.h"
 
