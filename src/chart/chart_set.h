@@ -32,6 +32,10 @@ struct ChartSet {
     std::vector<MeshCharts> meshes;  // one per Scene::meshes; empty charts where no instance wants texels
     bool scene_wide = false;         // TEXCOORD_1 is one atlas of the whole scene and is kept unchanged
     std::vector<bool> demoted;       // per Scene::instances: of class volume because its charts are bad. Empty: none
+    // Per Scene::instances and chart: no light gets there (path/sealed_charts.h), so that it is drawn at kSealedDensity
+    // of what is asked. Empty, of the scene or of an instance: none.
+    std::vector<std::vector<bool>> sealed = {};
+    static constexpr double kSealedDensity = 0.25;
 
     // Which class an instance has, now that its charts are known.
     [[nodiscard]] NodeClass class_of(const Scene& scene, std::size_t instance) const {
@@ -39,6 +43,9 @@ struct ChartSet {
     }
     [[nodiscard]] bool gets_texels(const Scene& scene, std::size_t instance) const {
         return class_of(scene, instance) == NodeClass::lightmap;
+    }
+    [[nodiscard]] bool is_sealed(std::size_t instance, std::size_t chart) const {
+        return !sealed.empty() && !sealed[instance].empty() && sealed[instance][chart];
     }
 };
 

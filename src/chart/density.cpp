@@ -137,7 +137,8 @@ std::vector<ChartInstance> chart_instances(const Scene& scene, const ChartSet& c
             const Rate rate = even ? Rate{scale, scale}
                                    : uneven_rate(*scene.meshes[instance.mesh], mesh_charts, mesh_charts.charts[c],
                                                  instance.transform);
-            out.push_back({i, instance.mesh, c, rate.x * instance.density_scale, rate.y * instance.density_scale});
+            const double scaled = instance.density_scale * (charts.is_sealed(i, c) ? ChartSet::kSealedDensity : 1.0);
+            out.push_back({i, instance.mesh, c, rate.x * scaled, rate.y * scaled});
         }
     }
     return out;

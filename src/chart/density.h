@@ -13,7 +13,8 @@ namespace lumel {
 // One chart of one lightmap instance.
 struct ChartInstance {
     std::uint32_t instance = 0, mesh = 0, chart = 0;
-    double rate_x = 1.0, rate_y = 1.0;  // metres of world per chart unit along u and v, times Instance::density_scale
+    // Metres of world per chart unit along u and v, times Instance::density_scale, less where the chart is sealed.
+    double rate_x = 1.0, rate_y = 1.0;
 };
 
 // All of them, by instance, then chart. A transform that scales evenly gives its factor to all charts; an uneven one

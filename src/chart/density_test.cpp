@@ -56,6 +56,17 @@ TEST(Density, UnevenTransformsStretchTheChartAlike) {
     EXPECT_NEAR(instances[0].rate_y, 1.0, 1e-6);
 }
 
+TEST(Density, SealedChartsGetAQuarter) {
+    Fixture f({turned({1, 1, 1}), turned({1, 1, 1}), turned({1, 1, 1})});
+    f.charts.sealed = {{false}, {true}, {}};
+    const auto instances = chart_instances(f.scene, f.charts);
+    ASSERT_EQ(instances.size(), 3u);
+    EXPECT_NEAR(instances[0].rate_x, 1.0, 1e-6);
+    EXPECT_NEAR(instances[1].rate_x, 0.25, 1e-6);
+    EXPECT_NEAR(instances[1].rate_y, 0.25, 1e-6);
+    EXPECT_NEAR(instances[2].rate_x, 1.0, 1e-6);
+}
+
 // 2 x 1 m at 10 texels per metre: 20 x 10 steps, 21 x 11 texels; both instances share the mask.
 TEST(Density, SizesInWholeSteps) {
     const Fixture f({turned({1, 1, 1}), turned({1, 1, 1}), turned({2, 2, 2})});
