@@ -66,7 +66,7 @@ private:
         if (!(density_ > 0.0)) {
             // A budget that the smallest charts eat by more than half is too small to be meant.
             const double budget = std::max(options_.texel_budget, 2.0 * least_texels(instances_));
-            LUMEL_TRY(density_, solve_density(charts_, instances_, budget, limit, context_));
+            LUMEL_TRY(density_, solve_density(charts_, instances_, budget, BudgetOf::baked, limit, context_));
         }
         if (!draw(limit)) return cancelled_error();
         packing_ = pack(sized_.masks, items(), options_.max_page, cancelled_);
@@ -88,7 +88,7 @@ private:
         }
         const double page = static_cast<double>(limit.width) * limit.height;
         for (double texels = 0.99 * page; texels > least_texels(instances_); texels *= kStep) {
-            LUMEL_TRY(density_, solve_density(charts_, instances_, texels, limit, context_));
+            LUMEL_TRY(density_, solve_density(charts_, instances_, texels, BudgetOf::page, limit, context_));
             LUMEL_TRY(const bool fits, try_resolution(limit));
             if (fits) return success();
         }

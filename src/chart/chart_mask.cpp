@@ -17,9 +17,10 @@ void ChartMask::set_span(std::uint32_t y, std::uint32_t x0, std::uint32_t x1) {
     row[last] |= tail;
 }
 
-void ChartMask::count() {
-    used = 0;
-    for (const std::uint64_t word : bits) used += static_cast<std::uint64_t>(std::popcount(word));
+std::uint64_t ChartMask::count() const {
+    std::uint64_t set = 0;
+    for (const std::uint64_t word : bits) set += static_cast<std::uint64_t>(std::popcount(word));
+    return set;
 }
 
 TexelMap fit_to_centres(Vec2 low, Vec2 high, std::uint32_t width, std::uint32_t height, double x, double y) {
@@ -36,10 +37,15 @@ ChartMask make_mask(std::span<const std::uint32_t> triangles, std::span<const Uv
                     std::uint32_t width, std::uint32_t height) {
     ChartMask mask(width, height);
     const TexelMap map = fit_to_centres(low, high, width, height, 0.0, 0.0);
-    for (const std::uint32_t t : triangles)
-        for_each_mask_span(uv[t], map, width, height,
-                           [&](std::uint32_t y, std::uint32_t x0, std::uint32_t x1) { mask.set_span(y, x0, x1); });
-    mask.count();
+    const auto draw = [&](double reach) {
+        for (const std::uint32_t t : triangles)
+            for_each_mask_span(
+                uv[t], map, width, height,
+                [&](std::uint32_t y, std::uint32_t x0, std::uint32_t x1) { mask.set_span(y, x0, x1); }, reach);
+        return mask.count();
+    };
+    mask.covered = draw(kTexelReach);  // of which all are among the others
+    mask.used = draw(kLookupReach);
     return mask;
 }
 

@@ -18,7 +18,8 @@ namespace lumel {
 // Rows of bits, each row starting a new word; bit x of a row is bit x % 64 of word x / 64.
 struct ChartMask {
     std::uint32_t width = 0, height = 0, words_per_row = 0;
-    std::uint64_t used = 0;  // bits set
+    std::uint64_t used = 0;     // bits set
+    std::uint64_t covered = 0;  // those whose own square meets the chart: what becomes a texel of the bake
     std::vector<std::uint64_t> bits;
 
     ChartMask() = default;
@@ -30,7 +31,7 @@ struct ChartMask {
     }
     // Sets x0 .. x1 - 1 of a row.
     void set_span(std::uint32_t y, std::uint32_t x0, std::uint32_t x1);
-    void count();
+    [[nodiscard]] std::uint64_t count() const;  // bits set
 };
 
 // uv_texels = uv * scale + offset, in double precision.
@@ -39,10 +40,12 @@ struct TexelMap {
 };
 
 // Calls span(y, x0, x1) for the texels x0 .. x1 - 1 of row y that belong to the triangle, clipped to width x height.
-// Open boxes: a triangle that only touches a box does not take it.
+// Open boxes: a triangle that only touches a box does not take it. Boxes reach as far from a texel's centre as a lookup
+// does; half a texel is the texel itself.
+inline constexpr double kLookupReach = 1.0, kTexelReach = 0.5;
 template <class Span>
 void for_each_mask_span(const UvTriangle& triangle, const TexelMap& map, std::uint32_t width, std::uint32_t height,
-                        const Span& span);
+                        const Span& span, double reach = kLookupReach);
 
 // The mask of a chart whose box spans the centres of `width` x `height` texels: steps of (width - 1) x (height - 1).
 // `low` and `high` are the bounds of its UVs.
@@ -81,7 +84,7 @@ inline XRange clip_to_rows(const double (&x)[3], const double (&y)[3], double lo
 
 template <class Span>
 void for_each_mask_span(const UvTriangle& triangle, const TexelMap& map, std::uint32_t width, std::uint32_t height,
-                        const Span& span) {
+                        const Span& span, double reach) {
     // Rounding of coordinates that lie on texel centres by construction must not reach the next texel.
     constexpr double kSnap = 1e-4;
     double x[3], y[3], y_low = 1e300, y_high = -1e300;
@@ -91,18 +94,18 @@ void for_each_mask_span(const UvTriangle& triangle, const TexelMap& map, std::ui
         y_low = y[k] < y_low ? y[k] : y_low;
         y_high = y[k] > y_high ? y[k] : y_high;
     }
-    // Texel j takes part where j + 0.5 lies in the open interval (low - 1, high + 1).
-    const auto first = [](double low, std::uint32_t size) {
-        const double j = std::floor(low - 1.5 + kSnap) + 1.0;
+    // Texel j takes part where j + 0.5 lies in the open interval (low - reach, high + reach).
+    const auto first = [reach](double low, std::uint32_t size) {
+        const double j = std::floor(low - reach - 0.5 + kSnap) + 1.0;
         return static_cast<std::uint32_t>(j < 0.0 ? 0.0 : (j > size ? size : j));
     };
-    const auto end = [](double high, std::uint32_t size) {
-        const double j = std::ceil(high + 0.5 - kSnap);
+    const auto end = [reach](double high, std::uint32_t size) {
+        const double j = std::ceil(high + reach - 0.5 - kSnap);
         return static_cast<std::uint32_t>(j < 0.0 ? 0.0 : (j > size ? size : j));
     };
     const std::uint32_t row_end = end(y_high, height);
     for (std::uint32_t row = first(y_low, height); row < row_end; ++row) {
-        const detail::XRange range = detail::clip_to_rows(x, y, row - 0.5, row + 1.5);
+        const detail::XRange range = detail::clip_to_rows(x, y, row + 0.5 - reach, row + 0.5 + reach);
         if (range.low > range.high) continue;
         const std::uint32_t x0 = first(range.low, width), x1 = end(range.high, width);
         if (x0 < x1) span(row, x0, x1);

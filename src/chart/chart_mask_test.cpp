@@ -85,5 +85,16 @@ TEST(ChartMask, LinesAndPointsHaveTexels) {
     EXPECT_EQ(mask_of({{{{1, 1}, {1, 1}, {1, 1}}}}, {1, 1}, {1, 1}, 2, 2).used, 1u);
 }
 
+// Half of a square of 8 x 8 steps: the lookups of its long side touch a diagonal of texels more than it covers.
+TEST(ChartMask, CountsTheTexelsThatTheChartCoversItself) {
+    const std::vector<std::uint32_t> all{0};
+    const std::vector<UvTriangle> uv{{Vec2{0, 0}, {8, 0}, {0, 8}}};
+    const ChartMask mask = make_mask(all, uv, {0, 0}, {8, 8}, 9, 9);
+    // Rows of 9, 8 .. 1; the diagonal x + y = 8 passes through the centres of its 9 texels. Lookups there reach the
+    // next diagonal, of 8 texels.
+    EXPECT_EQ(mask.covered, 45u);
+    EXPECT_EQ(mask.used, 53u);
+}
+
 }  // namespace
 }  // namespace lumel

@@ -174,6 +174,7 @@ std::optional<SizedCharts> size_charts(const ChartSet& charts, const std::vector
         const auto it = std::lower_bound(drawings.begin(), drawings.end(), d);
         sized.mask_of.push_back(static_cast<std::uint32_t>(it - drawings.begin()));
         sized.used += sized.masks[sized.mask_of.back()].used;
+        sized.covered += sized.masks[sized.mask_of.back()].covered;
     }
     return sized;
 }
@@ -195,7 +196,7 @@ double texels_at_unit_density(const ChartSet& charts, const std::vector<ChartIns
 }
 
 Result<double> solve_density(const ChartSet& charts, const std::vector<ChartInstance>& instances, double budget,
-                             SizeLimit limit, Context& context) {
+                             BudgetOf what, SizeLimit limit, Context& context) {
     const double unit = texels_at_unit_density(charts, instances);
     if (!(unit > 0.0)) return 1.0;
     const double target = std::max(budget, least_texels(instances));
@@ -204,7 +205,7 @@ Result<double> solve_density(const ChartSet& charts, const std::vector<ChartInst
     for (int step = 0; step < 24; ++step) {
         const std::optional<SizedCharts> sized = size_charts(charts, instances, density, limit, context);
         if (!sized) return cancelled_error();
-        const double used = static_cast<double>(sized->used);
+        const double used = static_cast<double>(what == BudgetOf::page ? sized->used : sized->covered);
         if (std::abs(used - target) <= 0.005 * target) break;
         (used < target ? low : high) = density;
         // Texels grow about as the square of the density; keep the guess well inside the bracket.

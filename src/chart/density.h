@@ -24,10 +24,10 @@ std::vector<ChartInstance> chart_instances(const Scene& scene, const ChartSet& c
 // Charts drawn at one density. Charts that look alike share a mask.
 struct SizedCharts {
     std::vector<ChartMask> masks;
-    std::vector<std::uint32_t> mask_of;  // beside the chart instances
-    std::uint64_t used = 0;              // texels of all instances
-    std::vector<std::uint32_t> clamped;  // chart instances that the largest size cut down
-    double reached = 0.0, least = 0.0;   // texels per metre, with the clamped ones: mean over the area, and lowest
+    std::vector<std::uint32_t> mask_of;   // beside the chart instances
+    std::uint64_t used = 0, covered = 0;  // texels of all instances: on pages, and those that are baked
+    std::vector<std::uint32_t> clamped;   // chart instances that the largest size cut down
+    double reached = 0.0, least = 0.0;    // texels per metre, with the clamped ones: mean over the area, and lowest
 };
 
 struct SizeLimit {
@@ -39,10 +39,13 @@ struct SizeLimit {
 std::optional<SizedCharts> size_charts(const ChartSet& charts, const std::vector<ChartInstance>& instances,
                                        double texels_per_metre, SizeLimit limit, Context& context);
 
+// What a budget counts: all texels that masks take on a page, or only those that will be baked.
+enum class BudgetOf : std::uint8_t { page, baked };
+
 // The density whose masks hold `budget` texels within half a percent, or as near as whole texels come. Where 2 x 2
 // texels for every chart would eat more than half of the budget, twice that floor is taken as the budget.
 Result<double> solve_density(const ChartSet& charts, const std::vector<ChartInstance>& instances, double budget,
-                             SizeLimit limit, Context& context);
+                             BudgetOf what, SizeLimit limit, Context& context);
 
 // Every chart 2 x 2.
 inline double least_texels(const std::vector<ChartInstance>& instances) {

@@ -100,12 +100,14 @@ TEST(Density, MeetsTheBudget) {
     const Fixture f(transforms);
     Context context(1);
     const auto instances = chart_instances(f.scene, f.charts);
-    for (const double budget : {2000.0, 50000.0, 1e6}) {
-        const auto density = solve_density(f.charts, instances, budget, kNoLimit, context);
-        ASSERT_TRUE(density.ok());
-        const auto sized = size_charts(f.charts, instances, *density, kNoLimit, context);
-        EXPECT_NEAR(static_cast<double>(sized->used), budget, 0.01 * budget);
-    }
+    for (const BudgetOf what : {BudgetOf::page, BudgetOf::baked})
+        for (const double budget : {2000.0, 50000.0, 1e6}) {
+            const auto density = solve_density(f.charts, instances, budget, what, kNoLimit, context);
+            ASSERT_TRUE(density.ok());
+            const auto sized = size_charts(f.charts, instances, *density, kNoLimit, context);
+            const std::uint64_t texels = what == BudgetOf::page ? sized->used : sized->covered;
+            EXPECT_NEAR(static_cast<double>(texels), budget, 0.01 * budget);
+        }
 }
 
 // A hundred charts need 400 texels; a budget of 10 cannot be met, and comes as near as it can.
@@ -113,7 +115,7 @@ TEST(Density, ABudgetBelowTheFloorGivesTheFloor) {
     const Fixture f(std::vector<Affine>(100, turned({1, 1, 1})));
     Context context(1);
     const auto instances = chart_instances(f.scene, f.charts);
-    const auto density = solve_density(f.charts, instances, 10.0, kNoLimit, context);
+    const auto density = solve_density(f.charts, instances, 10.0, BudgetOf::page, kNoLimit, context);
     ASSERT_TRUE(density.ok());
     EXPECT_EQ(size_charts(f.charts, instances, *density, kNoLimit, context)->used, 400u);
     EXPECT_EQ(least_texels(instances), 400.0);

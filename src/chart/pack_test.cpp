@@ -16,7 +16,7 @@ bool never() { return false; }
 ChartMask rectangle(std::uint32_t w, std::uint32_t h) {
     ChartMask mask(w, h);
     for (std::uint32_t y = 0; y < h; ++y) mask.set_span(y, 0, w);
-    mask.count();
+    mask.used = mask.count();
     return mask;
 }
 
@@ -41,7 +41,7 @@ ChartMask random_mask(test::Random& random, std::uint32_t largest) {
             mask.set_span(y, 0, w);
         }
     }
-    mask.count();
+    mask.used = mask.count();
     return mask;
 }
 
