@@ -28,7 +28,9 @@ TEST(Atlas, AMixedLevelIsClean) {
     const test::LayoutReport report = judge(level, l);
     expect_clean(report);
     EXPECT_EQ(l.atlas.pages.size(), 1u);
-    EXPECT_NEAR(static_cast<double>(report.texels), 60000.0, 0.02 * 60000) << "whole texels: a step of many instances";
+    // The budget is that of baked texels; the judge counts those that lookups touch beyond them, up to a ring a chart.
+    EXPECT_GT(report.texels, 60000u * 0.98);
+    EXPECT_LT(report.texels, 60000u * 1.08);
     EXPECT_GT(static_cast<double>(report.texels) / static_cast<double>(report.page_texels), 0.85);
     EXPECT_LT(report.stretch, 1.05);
     const std::size_t volume = level.scene.instances.size() - 2;

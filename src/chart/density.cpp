@@ -200,16 +200,17 @@ Result<double> solve_density(const ChartSet& charts, const std::vector<ChartInst
     const double unit = texels_at_unit_density(charts, instances);
     if (!(unit > 0.0)) return 1.0;
     const double target = std::max(budget, least_texels(instances));
+    const double aim = 0.9975 * target;  // a budget is a ceiling
     // Borders only add to the area, up to the rounding of sizes: twice its density is above the answer.
     double low = 0.0, high = 2.0 * std::sqrt(target / unit), density = 0.25 * high;
     for (int step = 0; step < 24; ++step) {
         const std::optional<SizedCharts> sized = size_charts(charts, instances, density, limit, context);
         if (!sized) return cancelled_error();
         const double used = static_cast<double>(what == BudgetOf::page ? sized->used : sized->covered);
-        if (std::abs(used - target) <= 0.005 * target) break;
-        (used < target ? low : high) = density;
+        if (std::abs(used - aim) <= 0.0025 * target) break;
+        (used < aim ? low : high) = density;
         // Texels grow about as the square of the density; keep the guess well inside the bracket.
-        const double guess = density * std::sqrt(target / used);
+        const double guess = density * std::sqrt(aim / used);
         const double margin = 0.02 * (high - low);
         density = std::clamp(guess, low + margin, high - margin);
     }

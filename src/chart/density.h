@@ -42,8 +42,8 @@ std::optional<SizedCharts> size_charts(const ChartSet& charts, const std::vector
 // What a budget counts: all texels that masks take on a page, or only those that will be baked.
 enum class BudgetOf : std::uint8_t { page, baked };
 
-// The density whose masks hold `budget` texels within half a percent, or as near as whole texels come. Where 2 x 2
-// texels for every chart would eat more than half of the budget, twice that floor is taken as the budget.
+// The density whose masks hold `budget` texels less at most half a percent, or as near as whole texels come. Where 2 x
+// 2 texels for every chart would eat more than half of the budget, twice that floor is taken as the budget.
 Result<double> solve_density(const ChartSet& charts, const std::vector<ChartInstance>& instances, double budget,
                              BudgetOf what, SizeLimit limit, Context& context);
 

@@ -106,7 +106,9 @@ TEST(Density, MeetsTheBudget) {
             ASSERT_TRUE(density.ok());
             const auto sized = size_charts(f.charts, instances, *density, kNoLimit, context);
             const std::uint64_t texels = what == BudgetOf::page ? sized->used : sized->covered;
-            EXPECT_NEAR(static_cast<double>(texels), budget, 0.01 * budget);
+            // A ceiling, but for what whole texels let no density meet: 200 charts of few texels grow together.
+            EXPECT_LE(static_cast<double>(texels), 1.002 * budget);
+            EXPECT_GE(static_cast<double>(texels), 0.99 * budget);
         }
 }
 
