@@ -23,7 +23,9 @@
 #include "path/light_cells.h"
 #include "path/path_integrator.h"
 #include "path/pooled_variance.h"
+#include "path/sealed_charts.h"
 #include "post/denoise.h"
+#include "post/fit_lookup.h"
 #include "post/lightmap.h"
 #include "scene/world_geometry.h"
 #include "texel/texel_buffer.h"
@@ -51,6 +53,12 @@ ChartOptions chart_options(const BakeOptions& options) {
     out.texels_per_metre = options.texels_per_metre;
     out.texel_budget = preset_values(options.preset).texel_budget;
     return out;
+}
+
+// Texels that are shared out where no density is asked: those of the one page, or the preset's.
+double texel_budget(const BakeOptions& options) {
+    if (options.resolution_width == 0) return preset_values(options.preset).texel_budget;
+    return static_cast<double>(options.resolution_width) * options.resolution_height;
 }
 
 PathOptions path_options(const BakeOptions& options, const WorldGeometry& geometry) {
@@ -193,7 +201,8 @@ struct PageBaker {
         }
         for (const std::uint32_t traced : sums.traced) report.samples += traced;
         LUMEL_TRY_STATUS(pool_variance(texels, sums, context));
-        if (options.denoise.value_or(preset_values(options.preset).denoise)) {
+        const bool smooth = options.denoise.value_or(preset_values(options.preset).denoise);
+        if (smooth) {
             const StageTimer timer(report, "denoise");
             LUMEL_TRY_STATUS(denoise(texels, {}, sums, context));
         }
@@ -201,6 +210,7 @@ struct PageBaker {
         const std::vector<std::uint32_t> readers = chart_ids(scene, charts, atlas, page);
         LUMEL_TRY(Lightmap map,
                   finish_page(texels, std::move(sums), std::move(surface), readers, options.dilate, context));
+        if (smooth) LUMEL_TRY_STATUS(fit_to_lookup(texels, {}, map, context));
         report.pages.push_back(page_report(map, texels));
         return map;
     }
@@ -269,6 +279,16 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
         const StageTimer timer(report, "charts");
         LUMEL_TRY(charts, make_charts(scene, geometry, chart_options(options), context));
     }
+    std::unique_ptr<Tracer> tracer;
+    {
+        const StageTimer timer(report, "acceleration");
+        LUMEL_TRY(tracer, make_embree_tracer(geometry, surfaces, context));
+    }
+    Transport transport{scene, geometry, surfaces, lights, *tracer};
+    if (!charts.scene_wide && !(options.texels_per_metre > 0.0)) {
+        const StageTimer timer(report, "sealed");
+        LUMEL_TRY(charts.sealed, find_sealed_charts(charts, texel_budget(options), transport, context));
+    }
     {
         const StageTimer timer(report, "atlas");
         const Diagnostics before = context.diagnostics;
@@ -295,12 +315,6 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
                      "smaller than a texel: ask for more --texels-per-metre"};
     if (sink.layout) LUMEL_TRY_STATUS(sink.layout(geometry, charts, atlas));
 
-    std::unique_ptr<Tracer> tracer;
-    {
-        const StageTimer timer(report, "acceleration");
-        LUMEL_TRY(tracer, make_embree_tracer(geometry, surfaces, context));
-    }
-    Transport transport{scene, geometry, surfaces, lights, *tracer};
     if (options.time_seconds > 0.0) {
         const StageTimer timer(report, "trial");
         LUMEL_TRY(path.samples, samples_in_time(scene, charts, atlas, transport, options, path, started, context));

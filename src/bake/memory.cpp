@@ -25,9 +25,9 @@ constexpr std::uint64_t kSumsBytes =
     kLayerCount * sizeof(LayerMoments) + 3 * sizeof(Vec3) + 2 * sizeof(float) + 2 * sizeof(std::uint32_t);
 // x, y, valid points, owner, position, normal, size; start and share of the triangle lists.
 constexpr std::uint64_t kTexelBufferBytes = 4 + 8 + 4 + 2 * sizeof(Vec3) + 4 + 4 + 12;
-// Albedo, emission, coverage, chart; queue of the fill or guides of the denoiser or pooled variance, of which one lives
-// at a time.
-constexpr std::uint64_t kLightmapBytes = 2 * sizeof(Vec3) + 1 + 4 + 2 * sizeof(Vec3);
+// Albedo, emission, coverage, chart; queue of the fill or guides of the denoiser or pooled variance or equations of the
+// fit (nine shares and six numbers each), of which one lives at a time.
+constexpr std::uint64_t kLightmapBytes = 2 * sizeof(Vec3) + 1 + 4 + 15 * sizeof(float);
 constexpr std::uint64_t kBytesPerPixel = 3 * sizeof(std::uint32_t);  // texel_at of both, readers
 
 // Rows of the master, the widest file, on one thread: as they were filled, as OpenEXR packs them, room to sort the

@@ -13,7 +13,7 @@
 namespace lumel {
 namespace {
 
-constexpr std::uint64_t kSealedKey = 0x5ea1u;  // keeps the point sets of charts apart from those of texels
+constexpr std::uint64_t kSealedKey = 0x5ea1u;  // of the random numbers: the same layout for any seed
 constexpr std::uint32_t kStride = 1597;        // odd: visits all strata of a chart, far apart ones first
 static_assert(kSealedPaths % kWavefrontLanes == 0 && (kSealedPaths & (kSealedPaths - 1)) == 0);
 
@@ -77,13 +77,10 @@ bool is_sealed(const ChartPoints& points, std::uint32_t key, const PathIntegrato
 }  // namespace
 
 Result<std::vector<std::vector<bool>>> find_sealed_charts(const ChartSet& charts, double texel_budget,
-                                                          const Transport& transport, const PathOptions& path,
-                                                          Context& context) {
+                                                          const Transport& transport, Context& context) {
     const std::vector<ChartInstance> instances = chart_instances(transport.scene, charts);
     const double area = texels_at_unit_density(charts, instances);
-    PathOptions looking = path;  // whatever the bake will show of the light, and however bright
-    looking.included.fill(true);
-    looking.layer_scale.fill(1.0f);
+    const PathOptions looking;  // whatever the bake will show of the light, how, and with which random numbers
     const PathIntegrator integrator(transport, looking);
     std::vector<Scratch> scratch(context.threads());
     for (Scratch& s : scratch) s.workspace = integrator.make_workspace();
@@ -97,8 +94,7 @@ Result<std::vector<std::vector<bool>>> find_sealed_charts(const ChartSet& charts
                 const ChartPoints points(transport, charts, instances[k]);
                 const double scale = transport.scene.instances[instances[k].instance].density_scale;
                 if (points.area() * scale * scale * texel_budget < kTexelsWorthSealing * area) continue;
-                sealed[k] = is_sealed(points, sampler_key(path.seed ^ (kSealedKey << 48), k), integrator,
-                                      scratch[range.worker]);
+                sealed[k] = is_sealed(points, sampler_key(kSealedKey, k), integrator, scratch[range.worker]);
             }
         },
         "sealed", [&] { return transport.tracer.statistics().rays - rays_before; });

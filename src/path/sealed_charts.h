@@ -10,8 +10,8 @@
 namespace lumel {
 
 inline constexpr std::uint32_t kSealedPaths = 4096;  // of each chart that is looked at, spread over it
-inline constexpr std::uint32_t kSealedPathsThatFind =
-    4;                                               // with more that find light it is not sealed: one in a thousand
+// With more that find light it is not sealed: one in a thousand.
+inline constexpr std::uint32_t kSealedPathsThatFind = 4;
 inline constexpr double kTexelsWorthSealing = 16.0;  // smaller charts would save nothing
 
 // For ChartSet::sealed. A chart is sealed where no more than one in a thousand of the paths from it (all bounces, no
@@ -19,7 +19,6 @@ inline constexpr double kTexelsWorthSealing = 16.0;  // smaller charts would sav
 // kTexelsWorthSealing or more if `texel_budget` is spread evenly. Any number of threads gives the same. Error:
 // cancelled.
 Result<std::vector<std::vector<bool>>> find_sealed_charts(const ChartSet& charts, double texel_budget,
-                                                          const Transport& transport, const PathOptions& path,
-                                                          Context& context);
+                                                          const Transport& transport, Context& context);
 
 }  // namespace lumel

@@ -36,7 +36,7 @@ Scene floor_and_hollow(Inside inside) {
 std::vector<std::vector<bool>> sealed_charts(Inside inside, double budget = 4000.0, unsigned threads = 2) {
     Context context(threads);
     const test::ChartedScene scene(floor_and_hollow(inside), 4, context);
-    return find_sealed_charts(scene.charts, budget, scene.traced.transport, {}, context).value();
+    return find_sealed_charts(scene.charts, budget, scene.traced.transport, context).value();
 }
 
 std::ptrdiff_t count(const std::vector<bool>& charts) { return std::count(charts.begin(), charts.end(), true); }
@@ -73,7 +73,7 @@ TEST(SealedCharts, GetAQuarterOfTheDensityAndLeaveTheRestToOthers) {
     };
     const Atlas before = make_atlas(scene.traced.scene, scene.traced.geometry, scene.charts, options, context).value();
     scene.charts.sealed =
-        find_sealed_charts(scene.charts, options.texel_budget, scene.traced.transport, {}, context).value();
+        find_sealed_charts(scene.charts, options.texel_budget, scene.traced.transport, context).value();
     const Atlas after = make_atlas(scene.traced.scene, scene.traced.geometry, scene.charts, options, context).value();
     // 16 m^2 of floor and 24 m^2 of hollow; the latter counts for a sixteenth: sqrt(40 / 17.5), less what borders take.
     EXPECT_NEAR(density(after, 0) / density(before, 0), 1.51, 0.05);

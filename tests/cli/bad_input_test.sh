@@ -127,9 +127,14 @@ done
 expect 2 '--sky-blur needs a sky map' bake ok.gltf -o x "${quick[@]}" --sky 1,1,1 --sky-blur 5
 expect 0 '' bake ok.gltf -o x "${quick[@]}" --sky 1,1,1 --sky-intensity 2
 for pair in --error=0.1 --confidence=0.9; do
-    expect 2 '--stop flux' bake ok.gltf -o x "${quick[@]}" "$pair"
     expect 0 '' bake ok.gltf -o x "${quick[@]}" --stop flux "$pair"
 done
+expect 2 '--confidence needs --error' bake ok.gltf -o x "${quick[@]}" --confidence 0.9
+expect 2 '--stop fixed' bake ok.gltf -o x "${quick[@]}" --stop fixed --error 0.1
+expect 2 '--time does not go with --error' bake ok.gltf -o x "${quick[@]}" --time 5 --error 0.1
+for value in 0 nan -1; do expect 2 --time bake ok.gltf -o x "${quick[@]}" --time "$value"; done
+expect 0 '' bake ok.gltf -o x "${quick[@]}" --error 0.1
+expect 0 '' bake ok.gltf -o x "${quick[@]}" --time 1
 for pair in --error=nan --confidence=nan; do
     expect 2 "${pair%%=*}" bake ok.gltf -o x "${quick[@]}" --stop flux "$pair"
 done
