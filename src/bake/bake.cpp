@@ -288,6 +288,7 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
     if (!charts.scene_wide && !(options.texels_per_metre > 0.0)) {
         const StageTimer timer(report, "sealed");
         LUMEL_TRY(charts.sealed, find_sealed_charts(charts, texel_budget(options), transport, context));
+        report.trace_wall_seconds += timer.seconds();
     }
     {
         const StageTimer timer(report, "atlas");
@@ -319,6 +320,7 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
         const StageTimer timer(report, "trial");
         LUMEL_TRY(path.samples, samples_in_time(scene, charts, atlas, transport, options, path, started, context));
         if (cell_samples > 0) cell_samples = samples_for_cells(options, path);
+        report.trace_wall_seconds += timer.seconds();
     }
     report.samples_per_texel = path.samples;
     std::optional<SurfaceCells> cells;

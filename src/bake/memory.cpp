@@ -23,8 +23,8 @@ constexpr std::uint64_t kProgramBytes = 64u << 20;  // code, libraries, allocato
 // ones, and the sums have room for them from the start, so that no array is held twice while it grows.
 constexpr std::uint64_t kSumsBytes =
     kLayerCount * sizeof(LayerMoments) + 3 * sizeof(Vec3) + 2 * sizeof(float) + 2 * sizeof(std::uint32_t);
-// x, y, valid points, owner, position, normal, size; start and share of the triangle lists.
-constexpr std::uint64_t kTexelBufferBytes = 4 + 8 + 4 + 2 * sizeof(Vec3) + 4 + 4 + 12;
+// x, y, valid points, owner, position, normal, size; start and share of the triangle lists; its place in the blocks.
+constexpr std::uint64_t kTexelBufferBytes = 4 + 8 + 4 + 2 * sizeof(Vec3) + 4 + 4 + 12 + 8;
 // Albedo, emission, coverage, chart; queue of the fill or guides of the denoiser or pooled variance or equations of the
 // fit (nine shares and six numbers each), of which one lives at a time.
 constexpr std::uint64_t kLightmapBytes = 2 * sizeof(Vec3) + 1 + 4 + 15 * sizeof(float);
