@@ -135,8 +135,8 @@ void print_files(const std::filesystem::path& folder, std::uint32_t views) {
 // What was reached of --error and --time.
 void print_reached(const BakeReport& report, const BakeOptions& options) {
     if (options.time_seconds > 0.0)
-        std::printf("%u samples per texel fitted the time: --samples %u gives the same bits\n",
-                    report.samples_per_texel, report.samples_per_texel);
+        std::printf("%u samples per texel for the time: --samples %u gives the same bits\n", report.samples_per_texel,
+                    report.samples_per_texel);
     if (!std::isfinite(report.share_within_error)) return;
     std::printf("%.1f %% of the texels are within %g at confidence %g; %.0f samples per texel of at most %u\n",
                 100.0 * report.share_within_error, options.error, options.confidence,
@@ -254,7 +254,7 @@ Run add_bake(CLI::App& app) {
         ->check(CLI::IsMember({"auto", "off"}))
         ->group(transport);
     app.add_option("--time", options->time,
-                   "Seconds to end within (files and views come on top): as many samples as fit, at most --samples")
+                   "Seconds of tracing to end within (denoising, files, views come on top): as many samples as fit")
         ->check(between(1e-3, 1e7))
         ->group(transport);
     app.add_option("--error", options->error,

@@ -47,10 +47,10 @@ struct BakeReport {
     // Of the texels' own paths: the noise of the surface cells, which is common to many texels, is not in it.
     double estimated_nrmse = 0.0;
     // Samples per texel, or the most where texels stop by themselves; --samples with this number gives the same bits as
-    // --time did.
+    // --time did, unless a ceiling of memory lays out fewer cells otherwise.
     std::uint32_t samples_per_texel = 0;
-    // Share of texels whose interval at options.confidence is within options.error of their irradiance (luminance), as
-    // stated before denoising. NaN where nothing was to be reached.
+    // Share of texels that are not black and whose interval at options.confidence, as traced, is within options.error
+    // of their irradiance (luminance). NaN where nothing was to be reached.
     double share_within_error = 0.0;
     double mean_irradiance[3] = {0, 0, 0};  // I = E/pi over baked texels
     double texels_per_metre = 0.0;        // reached, mean over the area; below what was asked where charts were clamped

@@ -131,10 +131,11 @@ struct Totals {
                 irradiance[c] += static_cast<double>(mean[c]);
             }
             // Channels err together, for it is the same light that they have met or missed.
-            within += map.texels.count[i] > 1 && static_cast<double>(luminance(error)) <=
-                                                     relative_error * static_cast<double>(luminance(mean))
-                          ? 1
-                          : 0;
+            within +=
+                map.texels.count[i] > 1 && max_component(mean) > 0.0f &&
+                        static_cast<double>(luminance(error)) <= relative_error * static_cast<double>(luminance(mean))
+                    ? 1
+                    : 0;
         }
     }
     [[nodiscard]] bool is_black() const { return irradiance[0] + irradiance[1] + irradiance[2] == 0.0; }
@@ -242,12 +243,12 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 // For options.time_seconds since `started`: page 0 is rasterised for the trial, and again when its turn has come.
 Result<std::uint32_t> samples_in_time(const Scene& scene, const ChartSet& charts, const Atlas& atlas,
                                       const Transport& transport, const BakeOptions& options, const PathOptions& path,
-                                      Clock::time_point started, Context& context) {
+                                      bool has_cells, Clock::time_point started, Context& context) {
     const Clock::time_point raster = Clock::now();
     const auto by_page = triangles_by_page(scene, transport.geometry, charts, atlas);
     LUMEL_TRY(const TexelBuffer texels,
               rasterize_page(scene, transport.geometry, charts, atlas, 0, by_page[0], context));
-    const TimePlan plan{charts, atlas, texels, seconds_since(started), seconds_since(raster)};
+    const TimePlan plan{charts, atlas, texels, seconds_since(started), seconds_since(raster), has_cells};
     return samples_within_time(plan, options, transport, path, context);
 }
 
@@ -257,8 +258,10 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
     std::optional<FlushDenormals> flush(std::in_place);  // in what this thread computes by itself, too
     BakeReport report;
     report.threads = context.threads();
-    const auto started = std::chrono::steady_clock::now();
+    const Clock::time_point started = Clock::now();
 
+    if (options.stop != StopRule::fixed && !(options.error > 0.0))
+        return Error{ErrorCode::usage, "the error to stop at is not above zero", {}, "give --error, for example 0.05"};
     LUMEL_TRY_STATUS(validate(scene));
     LUMEL_TRY(const WorldGeometry geometry, flatten(scene, context));
     report.input_hash = hash_scene(scene).hex();
@@ -285,7 +288,8 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
         LUMEL_TRY(tracer, make_embree_tracer(geometry, surfaces, context));
     }
     Transport transport{scene, geometry, surfaces, lights, *tracer};
-    if (!charts.scene_wide && !(options.texels_per_metre > 0.0)) {
+    // Both sides of a surface share its texels, so that neither alone can be called dark.
+    if (!charts.scene_wide && !(options.texels_per_metre > 0.0) && !options.two_sided) {
         const StageTimer timer(report, "sealed");
         LUMEL_TRY(charts.sealed, find_sealed_charts(charts, texel_budget(options), transport, context));
         report.trace_wall_seconds += timer.seconds();
@@ -318,7 +322,8 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
 
     if (options.time_seconds > 0.0) {
         const StageTimer timer(report, "trial");
-        LUMEL_TRY(path.samples, samples_in_time(scene, charts, atlas, transport, options, path, started, context));
+        LUMEL_TRY(path.samples,
+                  samples_in_time(scene, charts, atlas, transport, options, path, cell_samples > 0, started, context));
         if (cell_samples > 0) cell_samples = samples_for_cells(options, path);
         report.trace_wall_seconds += timer.seconds();
     }

@@ -28,6 +28,8 @@ constexpr std::uint64_t kTexelBufferBytes = 4 + 8 + 4 + 2 * sizeof(Vec3) + 4 + 4
 // Albedo, emission, coverage, chart; queue of the fill or guides of the denoiser or pooled variance or equations of the
 // fit (nine shares and six numbers each), of which one lives at a time.
 constexpr std::uint64_t kLightmapBytes = 2 * sizeof(Vec3) + 1 + 4 + 15 * sizeof(float);
+// Of a thread: a block of texels with their points and sums, a wavefront of paths.
+constexpr std::uint64_t kWorkspaceBytes = 1u << 20;
 constexpr std::uint64_t kBytesPerPixel = 3 * sizeof(std::uint32_t);  // texel_at of both, readers
 
 // Rows of the master, the widest file, on one thread: as they were filled, as OpenEXR packs them, room to sort the
@@ -129,8 +131,9 @@ std::uint64_t page_memory(const AtlasPage& page, unsigned threads) {
     const std::uint64_t texels = pixels_of(page);
     const std::uint64_t rows =
         std::uint64_t{kExrRowsPerChunk} * threads * page.width * kMasterPixelBytes * kCopiesOfRows;
-    // The texel buffer is gone when the files are written.
-    return texels * (kSumsBytes + kLightmapBytes + kBytesPerPixel) + std::max(texels * kTexelBufferBytes, rows);
+    // The texel buffer is gone when the files are written, and so is what each thread traces with.
+    return texels * (kSumsBytes + kLightmapBytes + kBytesPerPixel) +
+           std::max(texels * kTexelBufferBytes + threads * kWorkspaceBytes, rows);
 }
 
 CellMemory cell_memory(const WorldGeometry& geometry, const Atlas& atlas, std::uint32_t samples) {

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <optional>
+#include <string>
 
 #include "base/try.h"
 #include "path/gather_page.h"
@@ -71,7 +72,7 @@ Result<std::uint32_t> samples_within_time(const TimePlan& plan, const BakeOption
     std::optional<SurfaceCells> cells;
     Transport through = transport;
     PathOptions trial_path = path;
-    if (uses_cells(options, path)) {
+    if (plan.has_cells) {
         trial_path.samples = kFewestTimedSamples;
         LUMEL_TRY(cells, make_lit_cells(plan.charts, plan.atlas, transport, trial_path, context));
         const auto count = std::max<std::size_t>(1, cells->size());
@@ -101,12 +102,18 @@ Result<std::uint32_t> samples_within_time(const TimePlan& plan, const BakeOption
     const double pages = pixels_of(plan.atlas) / (static_cast<double>(plan.texels.width) * plan.texels.height);
     const double texels = pages * static_cast<double>(plan.texels.size());
     const double left = options.time_seconds - plan.elapsed_seconds - trial.seconds() - plan.raster_seconds * pages;
+    const auto seconds_for = [&](std::uint32_t n) {
+        return texels * n * seconds_per_sample + (cells ? cost.seconds(plan.atlas, n) : 0.0);
+    };
     std::uint32_t chosen = std::min(kFewestTimedSamples, path.samples);
+    if (seconds_for(chosen) > left)
+        context.diagnostics.add("time-too-short",
+                                "--time is too short for " + std::to_string(chosen) +
+                                    " samples per texel, the fewest that are taken: lower --texels-per-metre",
+                                transport.scene.source);
     for (std::uint32_t power = kFewestTimedSamples; power <= path.samples; power *= 2)
-        for (const std::uint32_t n : {power, power + power / 2}) {
-            const double needed = texels * n * seconds_per_sample + (cells ? cost.seconds(plan.atlas, n) : 0.0);
-            if (n <= path.samples && needed <= left) chosen = std::max(chosen, n);
-        }
+        for (const std::uint32_t n : {power, power + power / 2})
+            if (n <= path.samples && seconds_for(n) <= left) chosen = std::max(chosen, n);
     return chosen;
 }
 

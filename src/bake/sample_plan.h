@@ -19,11 +19,13 @@ struct TimePlan {
     const TexelBuffer& texels;
     double elapsed_seconds;  // of this bake
     double raster_seconds;   // that page 0 took
+    bool has_cells;          // that paths end at
 };
 
 // The largest number of samples, of those between kFewestTimedSamples and path.samples that are powers of two or half
 // as much again, that ends within options.time_seconds. Lights the coarsest cells and gathers some blocks with them to
-// know what a path costs. Error: cancelled.
+// know what a path costs. Diagnostics: "time-too-short" where not even the fewest do. What comes after tracing is not
+// planned for. Error: cancelled.
 inline constexpr std::uint32_t kFewestTimedSamples = 32;
 Result<std::uint32_t> samples_within_time(const TimePlan& plan, const BakeOptions& options, const Transport& transport,
                                           const PathOptions& path, Context& context);

@@ -1,7 +1,6 @@
 // JPEG through libjpeg-turbo: the only file that includes it.
 #include <turbojpeg.h>
 
-#include <limits>
 #include <memory>
 
 #include "base/try.h"
@@ -24,7 +23,7 @@ Error undecodable(const Decoder& decoder, const std::string& where) {
             "the image is damaged or of an unusual kind; save it again as plain PNG or JPEG"};
 }
 
-// Printers' colours to RGB in place. Every program stores such files inverted, as Adobe's did first: a code is the
+// Printers' colours to RGB in place. Nearly all programs store such files inverted, as Adobe's did first: a code is the
 // share of light that its ink lets through.
 void cmyk_to_rgb(std::vector<std::uint8_t>& codes) {
     std::size_t out = 0;

@@ -53,7 +53,7 @@ public:
     }
 
 private:
-    static void append(png_structp png, png_bytep bytes, std::size_t size) {
+    static void append(png_structp png, png_bytep bytes, std::size_t size) noexcept {
         auto& out = *static_cast<std::vector<std::byte>*>(png_get_io_ptr(png));
         const auto added = std::as_bytes(std::span(bytes, size));
         out.insert(out.end(), added.begin(), added.end());

@@ -297,6 +297,24 @@ TEST(DecodePng, RefusesEveryTruncationAndFlippedByte) {
         flipped[i] = static_cast<char>(flipped[i] ^ 0x10);
         EXPECT_FALSE(decode(flipped).ok()) << i;
     }
+    // Another chunk before the header, where the size is looked for, and a header of a million pixels squared.
+    std::string crowd = whole;
+    const std::string huge("\x00\x0f\x42\x40\x00\x0f\x42\x40", 8);
+    crowd.replace(16, 8, huge);
+    const auto crc = [](const std::string& bytes) {
+        std::uint32_t c = 0xffffffffu;
+        for (const char byte : bytes) {
+            c ^= static_cast<std::uint8_t>(byte);
+            for (int bit = 0; bit < 8; ++bit) c = c & 1 ? 0xedb88320u ^ (c >> 1) : c >> 1;
+        }
+        c ^= 0xffffffffu;
+        return std::string{static_cast<char>(c >> 24), static_cast<char>(c >> 16), static_cast<char>(c >> 8),
+                           static_cast<char>(c)};
+    };
+    crowd.replace(29, 4, crc(crowd.substr(12, 17)));
+    const std::string small = "aaaa" + std::string("\0\0\0\1\0\0\0\1", 8);
+    crowd.insert(8, std::string("\0\0\0\x08", 4) + small + crc(small));
+    EXPECT_NE(error_of(crowd).find("1000000 x 1000000 pixels"), std::string::npos) << error_of(crowd);
     // Pixel data that state 1 GB.
     std::string large = whole;
     large.replace(whole.find("IDAT") - 4, 4, "\x3f\x52\x47\x42");

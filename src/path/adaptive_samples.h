@@ -2,8 +2,8 @@
 //
 // A texel that stops when its own samples agree stops too early where light is rare: as long as it has missed the light
 // it sees no noise. That darkens texels by up to a fifth (Frostbite's published rule, StopRule::flux). Here a texel's
-// own samples have no say: the noise that is taken for its own is the mean of the others of its block, so that, given
-// when it stops, its mean is what it would have been.
+// own samples have no say in its own decision: the noise that is taken for its own is the mean of the others of its
+// block. (They have one in how many samples the others take, and in what guides them all: two steps away.)
 #pragma once
 
 #include <cstdint>

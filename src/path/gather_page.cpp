@@ -11,6 +11,8 @@ namespace lumel {
 
 namespace {
 
+static_assert(kBlockEdge * kBlockEdge == kMostTexelsTogether);
+
 // Where the texels of a block gather.
 class BlockSites {
 public:

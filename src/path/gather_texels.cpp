@@ -44,10 +44,11 @@ void PathIntegrator::begin_texel(const GatherSite& site, Workspace& w, TexelStat
     if (texel.both_sides) find_sunlit(std::span(texel.back_surfaces).first(n), false, w);
 }
 
-void PathIntegrator::gather_samples(std::uint32_t first, std::uint32_t last, bool learning, Workspace& w,
-                                    TexelState& texel) const {
+bool PathIntegrator::gather_samples(std::uint32_t first, std::uint32_t last, bool learning, Workspace& w,
+                                    TexelState& texel, const Context& context) const {
     const HemisphereGuide* const guide = w.guide ? &*w.guide : nullptr;
     for (std::uint32_t base = first, lanes = 0; base < last; base += lanes) {
+        if (context.cancelled()) return false;
         lanes = std::min(static_cast<std::uint32_t>(kWavefrontLanes), last - base);
         for (std::uint32_t lane = 0; lane < lanes; ++lane) {
             const std::uint32_t sample = base + lane;
@@ -69,14 +70,16 @@ void PathIntegrator::gather_samples(std::uint32_t first, std::uint32_t last, boo
             w.guide_statistics.add((base + lane) & 1u, w.first_draw[lane].point, w.first_draw[lane].density,
                                    w.first_radiance[lane]);
     }
+    return true;
 }
 
-void PathIntegrator::gather_until_converged(Workspace& w, TexelState& texel) const {
+bool PathIntegrator::gather_until_converged(Workspace& w, TexelState& texel, const Context& context) const {
     const std::uint32_t step = (options_.samples + 9) / 10;
     for (std::uint32_t first = 0; first < options_.samples; first += step) {
-        gather_samples(first, std::min(first + step, options_.samples), false, w, texel);
-        if (texel.sink.converged(options_.relative_error_of_mean)) return;
+        if (!gather_samples(first, std::min(first + step, options_.samples), false, w, texel, context)) return false;
+        if (texel.sink.converged(options_.relative_error_of_mean)) break;
     }
+    return true;
 }
 
 void PathIntegrator::gather_texels(std::span<const GatherSite> sites, std::span<const std::uint32_t> indices,
@@ -85,10 +88,8 @@ void PathIntegrator::gather_texels(std::span<const GatherSite> sites, std::span<
     w.texels.clear();
     for (const GatherSite& site : sites) begin_texel(site, w, w.texels.emplace_back(options_));
     if (options_.stop == StopRule::flux) {
-        for (TexelState& texel : w.texels) {
-            if (context.cancelled()) return;
-            gather_until_converged(w, texel);
-        }
+        for (TexelState& texel : w.texels)
+            if (!gather_until_converged(w, texel, context)) return;
     } else if (!gather_rounds(w, context)) {
         return;
     }
@@ -119,8 +120,7 @@ bool PathIntegrator::gather_rounds(Workspace& w, const Context& context) const {
         for (std::size_t k = 0; k < w.texels.size(); ++k) {
             TexelState& texel = w.texels[k];
             const std::uint32_t from = texel.sink.traced(), to = std::min(last, wanted[k]);
-            if (context.cancelled()) return false;
-            if (from < to) gather_samples(from, to, guided, w, texel);
+            if (from < to && !gather_samples(from, to, guided, w, texel, context)) return false;
             any = any || wanted[k] > last;
         }
         if (!any) break;

@@ -10,7 +10,7 @@ namespace {
 constexpr std::uint32_t kFewestSamples = 512;  // of both halves: one a bin, nine for what it is blurred from
 constexpr float kLeastGain = 1.15f;            // below which a guide is not worth its own cost
 // Of the mean moment, added to each bin: a bin in which no path has met anything may still hold some light.
-constexpr float kBlur = 0.02f;
+constexpr float kUnseen = 0.02f;
 
 using Bins = std::array<float, HemisphereGuide::kBins>;
 
@@ -39,7 +39,7 @@ Bins blurred(const Bins& in) {
 // The density of least variance: the root of the second moment.
 Bins root(const Bins& moments) {
     Bins out = blurred(moments);
-    const float floor = kBlur * sum(moments) / static_cast<float>(moments.size());
+    const float floor = kUnseen * sum(moments) / static_cast<float>(moments.size());
     for (float& bin : out) bin = std::sqrt(bin + floor);
     return out;
 }
@@ -106,7 +106,7 @@ std::optional<HemisphereGuide> GuideStatistics::learn() const {
     // A guide of one half must be good for the other, which knows nothing of its accidents.
     const float gain = std::min(predicted_gain(HemisphereGuide(root(moments_[0])), moments_[1]),
                                 predicted_gain(HemisphereGuide(root(moments_[1])), moments_[0]));
-    if (gain < kLeastGain) return std::nullopt;
+    if (!(gain >= kLeastGain) || !std::isfinite(sum(moments_[0]) + sum(moments_[1]))) return std::nullopt;
     Bins both = moments_[0];
     for (std::size_t bin = 0; bin < both.size(); ++bin) both[bin] += moments_[1][bin];
     return HemisphereGuide(root(both));

@@ -116,14 +116,14 @@ public:
 private:
     struct TexelState;
     void begin_texel(const GatherSite& site, Workspace& workspace, TexelState& texel) const;
-    // Samples first to last - 1 of a texel. `learning`: for the guide, too.
-    void gather_samples(std::uint32_t first, std::uint32_t last, bool learning, Workspace& workspace,
-                        TexelState& texel) const;
+    // Samples first to last - 1 of a texel. `learning`: for the guide, too. These return false where cancelled.
+    bool gather_samples(std::uint32_t first, std::uint32_t last, bool learning, Workspace& workspace, TexelState& texel,
+                        const Context& context) const;
     // All samples of the workspace's texels, each round as many as there were before; between them the guide is learned
-    // and the samples are allotted. False where `context` was cancelled.
+    // and the samples are allotted.
     bool gather_rounds(Workspace& workspace, const Context& context) const;
     // By Frostbite's rule.
-    void gather_until_converged(Workspace& workspace, TexelState& texel) const;
+    bool gather_until_converged(Workspace& workspace, TexelState& texel, const Context& context) const;
     // Fills in `sunlit`, where knows_point_suns_.
     void find_sunlit(std::span<SurfaceStart> starts, bool bounced, Workspace& workspace) const;
     template <class Sink>

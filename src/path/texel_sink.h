@@ -138,7 +138,6 @@ private:
     [[nodiscard]] Counts counts() const { return {count_, squared_counts_, static_cast<double>(traced_)}; }
 
     // Moments of samples x_i over all paths, which count as v_i (a void one as nothing): the mean is sum x / sum v.
-    //
     class Moments {
     public:
         void add(double x, double counts) {

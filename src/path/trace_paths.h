@@ -1,4 +1,5 @@
-// One wavefront of paths, for any sink. Included where a sink is: path_integrator.cpp, gather_cell.cpp.
+// One wavefront of paths, for any sink. Included where a sink is: path_integrator.cpp, gather_texels.cpp,
+// gather_cell.cpp.
 //
 // Based on: Kajiya 1986 (path tracing); Veach 1997, ch. 9 (power heuristic) and 10.4 (roulette).
 #pragma once
