@@ -47,7 +47,7 @@ struct BakeReport {
     // Of the texels' own paths: the noise of the surface cells, which is common to many texels, is not in it.
     double estimated_nrmse = 0.0;
     // Samples per texel, or the most where texels stop by themselves; --samples with this number gives the same bits as
-    // --time did, unless a ceiling of memory lays out fewer cells otherwise.
+    // --time did; with max_memory_bytes only where that changed neither layout nor cells.
     std::uint32_t samples_per_texel = 0;
     // Share of texels that are not black and whose interval at options.confidence, as traced, is within options.error
     // of their irradiance (luminance). NaN where nothing was to be reached.

@@ -2,10 +2,10 @@
 // wavefronts of paths. Without surface cells it is brute force, the truth that all else is measured against.
 //
 // Which rays a texel sends (docs/conventions.md, "The hemisphere of a texel"): the upper hemisphere of the vertex
-// normal, with density (1/2 + cos)/(2 pi), from sample points spread over the texel. A path whose first ray meets the
-// back of a single-sided surface is void: what it would have met leaves the sums, and it leaves the count of all layers
-// and moments. Light that is sampled at its start (which another direction reaches) stays in the sums: both ways to
-// sample the same light have one normaliser.
+// normal, with density (1/2 + cos)/(2 pi) unless they are guided, from sample points spread over the texel. A path
+// whose first ray meets the back of a single-sided surface is void: what it would have met leaves the sums, and it
+// leaves the count of all layers and moments. Light that is sampled at its start (which another direction reaches)
+// stays in the sums: both ways to sample the same light have one normaliser.
 #pragma once
 
 #include <array>

@@ -32,9 +32,9 @@ struct RadianceSums {
     std::vector<Vec3> half_difference;  // of the means of even and odd samples, which are spread evenly each for itself
     std::vector<float> sky_visibility;  // cosine-weighted share of directions that reach the sky, 0..1
     std::vector<float> ambient_occlusion;  // cosine-weighted share free within --ao-distance, 0..1 (1 = open)
-    std::vector<Vec3> bent_normal;         // mean free direction, cosine-weighted, not normalised: |.| <= 1
-    std::vector<std::uint32_t> count;      // valid samples, whose gather ray met no back face; guided, as estimated
-    std::vector<std::uint32_t> traced;     // samples traced
+    std::vector<Vec3> bent_normal;      // mean free direction, cosine-weighted, not normalised: |.| <= 1 but for noise
+    std::vector<std::uint32_t> count;   // valid samples, whose gather ray met no back face; guided, as estimated
+    std::vector<std::uint32_t> traced;  // samples traced
     void resize(std::size_t texels);
     void reserve(std::size_t texels);
     void clear(std::size_t texel);
