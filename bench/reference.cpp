@@ -1,6 +1,5 @@
 #include "reference.h"
 
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -8,6 +7,7 @@
 #include <stdexcept>
 
 #include "base/hash.h"
+#include "base/stopwatch.h"
 #include "io/image_io.h"
 #include "light/light_set.h"
 #include "load.h"
@@ -144,9 +144,9 @@ ReferenceHalf reference_half(const BenchScene& bench, TexelRange range, std::uin
     };
     bool more = false;
     while (wanted()) {
-        const auto begin = std::chrono::steady_clock::now();
+        const Stopwatch clock;
         add_pass(half, bench, range, lights, which, context);
-        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+        const double seconds = clock.seconds();
         half.header.seconds += seconds;
         longest = std::max(longest, seconds);
         more = true;

@@ -1,7 +1,6 @@
 // The order of the stages. Nothing else knows it.
 #include "lumel/bake.h"
 
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -14,6 +13,7 @@
 #include "base/denormals.h"
 #include "base/memory_use.h"
 #include "base/progress_parts.h"
+#include "base/stopwatch.h"
 #include "base/try.h"
 #include "chart/chart_picture.h"
 #include "chart/chart_set.h"
@@ -205,7 +205,9 @@ struct PageBaker {
         const bool smooth = options.denoise.value_or(preset_values(options.preset).denoise);
         if (smooth) {
             const StageTimer timer(report, "denoise");
-            LUMEL_TRY_STATUS(denoise(texels, {}, sums, context));
+            DenoiseOptions smoothing;
+            smoothing.included = path.included;
+            LUMEL_TRY_STATUS(denoise(texels, smoothing, sums, context));
         }
         const StageTimer timer(report, "post");
         const std::vector<std::uint32_t> readers = chart_ids(scene, charts, atlas, page);
@@ -236,19 +238,16 @@ Status bake_pages(const PageBaker& baker, const BakeSink& sink, Totals& totals) 
     return success();
 }
 
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
-// For options.time_seconds since `started`: page 0 is rasterised for the trial, and again when its turn has come.
+// For options.time_seconds by the clock of the bake: page 0 is rasterised for the trial, and again when its turn has
+// come.
 Result<std::uint32_t> samples_in_time(const Scene& scene, const ChartSet& charts, const Atlas& atlas,
                                       const Transport& transport, const BakeOptions& options, const PathOptions& path,
-                                      bool has_cells, Clock::time_point started, Context& context) {
-    const Clock::time_point raster = Clock::now();
+                                      bool has_cells, const Stopwatch& clock, Context& context) {
+    const Stopwatch raster;
     const auto by_page = triangles_by_page(scene, transport.geometry, charts, atlas);
     LUMEL_TRY(const TexelBuffer texels,
               rasterize_page(scene, transport.geometry, charts, atlas, 0, by_page[0], context));
-    const TimePlan plan{charts, atlas, texels, seconds_since(started), seconds_since(raster), has_cells};
+    const TimePlan plan{charts, atlas, texels, clock.seconds(), raster.seconds(), has_cells};
     return samples_within_time(plan, options, transport, path, context);
 }
 
@@ -258,7 +257,7 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
     std::optional<FlushDenormals> flush(std::in_place);  // in what this thread computes by itself, too
     BakeReport report;
     report.threads = context.threads();
-    const Clock::time_point started = Clock::now();
+    const Stopwatch clock;
 
     if (options.stop != StopRule::fixed && !(options.error > 0.0))
         return Error{ErrorCode::usage, "the error to stop at is not above zero", {}, "give --error, for example 0.05"};
@@ -323,7 +322,7 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
     if (options.time_seconds > 0.0) {
         const StageTimer timer(report, "trial");
         LUMEL_TRY(path.samples,
-                  samples_in_time(scene, charts, atlas, transport, options, path, cell_samples > 0, started, context));
+                  samples_in_time(scene, charts, atlas, transport, options, path, cell_samples > 0, clock, context));
         if (cell_samples > 0) cell_samples = samples_for_cells(options, path);
         report.trace_wall_seconds += timer.seconds();
     }

@@ -1,11 +1,11 @@
 #include "bake/sample_plan.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <optional>
 #include <string>
 
+#include "base/stopwatch.h"
 #include "base/try.h"
 #include "path/gather_page.h"
 #include "path/light_cells.h"
@@ -23,16 +23,6 @@ bool uses_cells(const BakeOptions& options, const PathOptions& path) {
         return path.samples >= kFewestSamplesForCells && path.bounces >= kFewestBouncesForCells;
     return options.integrator == Integrator::cells;
 }
-
-class Clock {
-public:
-    [[nodiscard]] double seconds() const {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    }
-
-private:
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 double pixels_of(const Atlas& atlas) {
     double pixels = 0.0;
@@ -67,7 +57,7 @@ std::uint32_t samples_for_cells(const BakeOptions& options, const PathOptions& p
 
 Result<std::uint32_t> samples_within_time(const TimePlan& plan, const BakeOptions& options, const Transport& transport,
                                           const PathOptions& path, Context& context) {
-    const Clock trial;
+    const Stopwatch trial;
     CellCost cost;
     std::optional<SurfaceCells> cells;
     Transport through = transport;
@@ -93,7 +83,7 @@ Result<std::uint32_t> samples_within_time(const TimePlan& plan, const BakeOption
         some.texels.insert(some.texels.end(), block.begin(), block.end());
         some.first.push_back(static_cast<std::uint32_t>(some.texels.size()));
     }
-    const Clock gathering;
+    const Stopwatch gathering;
     LUMEL_TRY(const RadianceSums sums,
               gather_blocks(some, plan.texels, plan.charts, plan.atlas, through, trial_path, context));
     const double texels_of_trial = std::max<double>(1.0, static_cast<double>(some.texels.size()));

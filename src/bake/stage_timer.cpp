@@ -19,7 +19,7 @@ double cpu_seconds() {
 }  // namespace
 
 StageTimer::StageTimer(BakeReport& report, std::string stage)
-    : report_(report), stage_(std::move(stage)), wall_(std::chrono::steady_clock::now()), cpu_(cpu_seconds()) {}
+    : report_(report), stage_(std::move(stage)), cpu_(cpu_seconds()) {}
 
 StageTimer::~StageTimer() {
     const double wall = seconds();
@@ -31,10 +31,6 @@ StageTimer::~StageTimer() {
             return;
         }
     report_.stages.push_back({stage_, wall, cpu});
-}
-
-double StageTimer::seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_).count();
 }
 
 }  // namespace lumel

@@ -1,9 +1,9 @@
 // Time per stage for the report.
 #pragma once
 
-#include <chrono>
 #include <string>
 
+#include "base/stopwatch.h"
 #include "lumel/bake.h"
 
 namespace lumel {
@@ -15,12 +15,12 @@ public:
     ~StageTimer();
     StageTimer(const StageTimer&) = delete;
     StageTimer& operator=(const StageTimer&) = delete;
-    [[nodiscard]] double seconds() const;
+    [[nodiscard]] double seconds() const { return wall_.seconds(); }
 
 private:
     BakeReport& report_;
     std::string stage_;
-    std::chrono::steady_clock::time_point wall_;
+    Stopwatch wall_;
     double cpu_;
 };
 

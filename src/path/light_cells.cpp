@@ -35,7 +35,11 @@ Result<SurfaceCells> make_lit_cells(const ChartSet& charts, const Atlas& atlas, 
     progress.begin(kMakeWork);
     LUMEL_TRY(SurfaceCells cells, SurfaceCells::make(transport.scene, transport.geometry, charts, atlas,
                                                      transport.tracer, texels_per_cell(atlas, path.samples), context));
-    if (cells.size() == 0) return cells;
+    if (cells.size() == 0) {
+        progress.begin(gather_work + kSolveWork);
+        context.report("cells", 1.0);
+        return cells;
+    }
 
     Transport into_cells = transport;
     into_cells.cells = &cells;

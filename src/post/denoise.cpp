@@ -33,7 +33,7 @@ public:
           sums_(sums),
           radius_(static_cast<int>(options.radius)),
           k2_(options.strength * options.strength) {
-        read_guides();
+        read_guides(options.included);
         find_row_starts();
     }
 
@@ -123,11 +123,12 @@ private:
         return near * near * near * near;
     }
 
-    void read_guides() {
+    void read_guides(const std::array<bool, kLayerCount>& included) {
         guides_.resize(texels_.size());
         for (std::size_t i = 0; i < guides_.size(); ++i) {
             if (!sums_.valid(i)) continue;
-            for (const LayerMoments& layer : sums_.layers[i]) guides_[i].irradiance += layer.irradiance;
+            for (std::size_t l = 0; l < kLayerCount; ++l)
+                if (included[l]) guides_[i].irradiance += sums_.layers[i][l].irradiance;
             guides_[i].variance = sums_.variance[i];
         }
     }

@@ -1,0 +1,19 @@
+// Wall time since a moment.
+#pragma once
+
+#include <chrono>
+
+namespace lumel {
+
+// Runs from where it is made.
+class Stopwatch {
+public:
+    [[nodiscard]] double seconds() const {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    }
+
+private:
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace lumel
