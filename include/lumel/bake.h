@@ -46,6 +46,9 @@ struct BakeReport {
     // From the stored variance, before denoising: sqrt(mean variance) / mean irradiance. NaN: of single paths, unknown.
     // Of the texels' own paths: the noise of the surface cells, which is common to many texels, is not in it.
     double estimated_nrmse = 0.0;
+    // What the surface cells add to all light of the included layers, as a share of it, and the standard error of that:
+    // some texels are gathered a second time without them. NaN: no cells, or no light.
+    double cell_bias = 0.0, cell_bias_error = 0.0;
     // Samples per texel, or the most where texels stop by themselves; --samples with this number gives the same bits as
     // --time did; with max_memory_bytes only where that changed neither layout nor cells.
     std::uint32_t samples_per_texel = 0;

@@ -19,6 +19,7 @@
 #include "chart/chart_set.h"
 #include "light/light_set.h"
 #include "math/normal_quantile.h"
+#include "path/cell_bias.h"
 #include "path/gather_page.h"
 #include "path/light_cells.h"
 #include "path/path_integrator.h"
@@ -173,6 +174,8 @@ PageReport page_report(const Lightmap& map, const TexelBuffer& buffer) {
     return page;
 }
 
+constexpr double kBiasWork = 0.03;  // time to measure the cells' bias, in that of gathering the page
+
 // What the pages are baked from, one at a time.
 struct PageBaker {
     const Scene& scene;
@@ -182,6 +185,7 @@ struct PageBaker {
     const BakeOptions& options;
     const PathOptions& path;
     BakeReport& report;
+    CellBias& bias;
     Context& context;
 
     // The texel buffer lives no longer than this.
@@ -196,8 +200,14 @@ struct PageBaker {
         }
         {
             const StageTimer timer(report, "trace");
+            ProgressParts progress(context, "trace", transport.cells ? 1.0 + kBiasWork : 1.0);
+            progress.begin(1.0);
             const std::size_t room = texels_with_rings(texels, options.dilate);
             LUMEL_TRY(sums, gather_page(texels, charts, atlas, transport, path, 0, texels.size(), context, room));
+            if (transport.cells) {
+                progress.begin(kBiasWork);
+                LUMEL_TRY_STATUS(measure_cell_bias(texels, charts, atlas, transport, path, bias, context));
+            }
             report.trace_wall_seconds += timer.seconds();
         }
         for (const std::uint32_t traced : sums.traced) report.samples += traced;
@@ -340,7 +350,10 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
     }
     Totals totals;
     if (options.stop != StopRule::fixed) totals.relative_error = path.relative_error_of_mean;
-    LUMEL_TRY_STATUS(bake_pages({scene, charts, atlas, transport, options, path, report, context}, sink, totals));
+    CellBias bias;
+    LUMEL_TRY_STATUS(bake_pages({scene, charts, atlas, transport, options, path, report, bias, context}, sink, totals));
+    report.cell_bias = bias.relative();
+    report.cell_bias_error = bias.standard_error();
     for (const PageReport& page : report.pages) {
         report.texels += page.texels;
         report.invalid_texels += page.invalid;

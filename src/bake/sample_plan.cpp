@@ -74,15 +74,7 @@ Result<std::uint32_t> samples_within_time(const TimePlan& plan, const BakeOption
     // Blocks from all over the page.
     trial_path.samples = kTrialSamples;
     trial_path.stop = StopRule::fixed;
-    const TexelBlocks blocks = make_texel_blocks(plan.texels, 0, plan.texels.size());
-    const std::size_t stride = std::max<std::size_t>(1, plan.texels.size() / kTrialTexels);
-    TexelBlocks some;
-    some.first.push_back(0);
-    for (std::size_t b = stride / 2; b < blocks.size(); b += stride) {
-        const auto block = blocks.block(b);
-        some.texels.insert(some.texels.end(), block.begin(), block.end());
-        some.first.push_back(static_cast<std::uint32_t>(some.texels.size()));
-    }
+    const TexelBlocks some = spread_blocks(make_texel_blocks(plan.texels, 0, plan.texels.size()), kTrialTexels);
     const Stopwatch gathering;
     LUMEL_TRY(const RadianceSums sums,
               gather_blocks(some, plan.texels, plan.charts, plan.atlas, through, trial_path, context));

@@ -122,20 +122,37 @@ std::uint32_t SurfaceCells::front_at(std::uint32_t page, std::int32_t x, std::in
     return first_cell_[page] + texel;
 }
 
-SurfaceCells::Lookup SurfaceCells::find(std::uint32_t triangle, float b1, float b2, bool back_face, Vec2 jitter) const {
+SurfaceCells::Place SurfaceCells::find(std::uint32_t triangle, float b1, float b2, bool back_face) const {
     const Corners& c = triangles_[triangle];
     if (c.page == kNone) return {};
     const Vec2 p = c.uv[0] * (1.0f - b1 - b2) + c.uv[1] * b1 + c.uv[2] * b2;
-    const auto x = static_cast<std::int32_t>(p.x), y = static_cast<std::int32_t>(p.y);
-    const auto side = [&](std::uint32_t front) { return back_face && front != kNone ? sites_[front].back : front; };
-    const std::uint32_t cell = side(front_at(c.page, x, y, c.placement));
-    if (cell == kNone || !usable_[cell]) return {};
-    const auto jittered_x = static_cast<std::int32_t>(std::floor(p.x + jitter.x - 0.5f));
-    const auto jittered_y = static_cast<std::int32_t>(std::floor(p.y + jitter.y - 0.5f));
-    if (jittered_x == x && jittered_y == y) return {cell, cell};
-    if (!(open_[cell] >> neighbour_bit(jittered_x - x, jittered_y - y) & 1u)) return {cell, cell};
-    const std::uint32_t neighbour = side(front_at(c.page, jittered_x, jittered_y, c.placement));
-    return {cell, neighbour != kNone && usable_[neighbour] ? neighbour : cell};
+    Place place{kNone, c.page,   c.placement, static_cast<std::int32_t>(p.x), static_cast<std::int32_t>(p.y),
+                {},    back_face};
+    place.offset = {p.x - static_cast<float>(place.x) - 0.5f, p.y - static_cast<float>(place.y) - 0.5f};
+    const std::uint32_t front = front_at(c.page, place.x, place.y, c.placement);
+    const std::uint32_t cell = back_face && front != kNone ? sites_[front].back : front;
+    if (cell != kNone && usable_[cell]) place.home = cell;
+    return place;
+}
+
+std::uint32_t SurfaceCells::seen_from(const Place& place, std::int32_t dx, std::int32_t dy) const {
+    if ((dx == 0 && dy == 0) || !(open_[place.home] >> neighbour_bit(dx, dy) & 1u)) return place.home;
+    const std::uint32_t front = front_at(place.page, place.x + dx, place.y + dy, place.placement);
+    const std::uint32_t cell = place.back && front != kNone ? sites_[front].back : front;
+    return cell != kNone && usable_[cell] ? cell : place.home;
+}
+
+Vec3 SurfaceCells::irradiance(const Place& place) const {
+    const std::int32_t dx = place.offset.x < 0.0f ? -1 : 1, dy = place.offset.y < 0.0f ? -1 : 1;
+    const float u = std::fabs(place.offset.x), v = std::fabs(place.offset.y);
+    return irradiance_[place.home] * ((1.0f - u) * (1.0f - v)) +
+           irradiance_[seen_from(place, dx, 0)] * (u * (1.0f - v)) +
+           irradiance_[seen_from(place, 0, dy)] * ((1.0f - u) * v) + irradiance_[seen_from(place, dx, dy)] * (u * v);
+}
+
+std::uint32_t SurfaceCells::pick(const Place& place, Vec2 jitter) const {
+    return seen_from(place, static_cast<std::int32_t>(std::floor(place.offset.x + jitter.x)),
+                     static_cast<std::int32_t>(std::floor(place.offset.y + jitter.y)));
 }
 
 std::uint32_t SurfaceCells::sample_points(std::uint32_t cell, const Scene& scene, const WorldGeometry& geometry,

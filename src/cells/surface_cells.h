@@ -48,13 +48,20 @@ public:
     // Fronts first, then the backs of double-sided ones.
     [[nodiscard]] std::size_t size() const { return usable_.size(); }
 
-    // The cell that a point of a world triangle lies in, and the one to take light from; both kNone where nothing is
-    // known. `jitter`, in [0, 1)^2, picks that among the four nearest cells that see each other with the shares of
-    // bilinear interpolation. Whether to take it at all must hang on `home` alone, or the jitter is no longer even.
-    struct Lookup {
-        std::uint32_t home = kNone, light = kNone;
+    // Where a point lies among the cells.
+    struct Place {
+        std::uint32_t home = kNone;  // the cell around it; kNone: nothing is known there
+        std::uint32_t page = 0, placement = kNone;
+        std::int32_t x = 0, y = 0;  // of the cell, in texels of the page
+        Vec2 offset{};              // from the cell's middle, in cells: -0.5 .. 0.5
+        bool back = false;
     };
-    [[nodiscard]] Lookup find(std::uint32_t triangle, float b1, float b2, bool back_face, Vec2 jitter) const;
+    [[nodiscard]] Place find(std::uint32_t triangle, float b1, float b2, bool back_face) const;
+    // Light there, by the four nearest cells, of those that home sees, with the shares of bilinear interpolation. As
+    // irradiance(cell); `place.home` is not kNone.
+    [[nodiscard]] Vec3 irradiance(const Place& place) const;
+    // One of them; with `jitter` even in [0, 1)^2 in those shares.
+    [[nodiscard]] std::uint32_t pick(const Place& place, Vec2 jitter) const;
 
     // Metres across a cell.
     [[nodiscard]] float edge(std::uint32_t cell) const { return site(cell).edge; }
@@ -95,6 +102,8 @@ private:
     // The front cell at a texel of a page, if it belongs to that chart; else kNone.
     [[nodiscard]] std::uint32_t front_at(std::uint32_t page, std::int32_t x, std::int32_t y,
                                          std::uint32_t placement) const;
+    // The cell so many steps from home; home where they do not see each other.
+    [[nodiscard]] std::uint32_t seen_from(const Place& place, std::int32_t dx, std::int32_t dy) const;
     void lay_out(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts);
     Status rasterize(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts, Context& context);
     // Metres from the surface to where a cell is looked at from.

@@ -30,9 +30,13 @@ struct Floor {
     }
     // The cell below a point of the floor.
     [[nodiscard]] std::uint32_t at(float x, float z, bool back = false, Vec2 jitter = {0.5f, 0.5f}) const {
+        const auto place = place_of(x, z, back);
+        return place.home == kNone ? kNone : cells.pick(place, jitter);
+    }
+    [[nodiscard]] SurfaceCells::Place place_of(float x, float z, bool back = false) const {
         // Corners (0,0), (4,0), (4,4) and (0,0), (4,4), (0,4) in (x, z) turned: see add_floor.
         const float u = x / 4.0f, v = 1.0f - z / 4.0f;
-        return (u >= v ? cells.find(0, u - v, v, back, jitter) : cells.find(1, u, v - u, back, jitter)).light;
+        return u >= v ? cells.find(0, u - v, v, back) : cells.find(1, u, v - u, back);
     }
 };
 
@@ -60,6 +64,26 @@ TEST(SurfaceCells, ASingleSidedFloorHasNoCellsBelow) {
     ASSERT_NE(below, kNone);
     EXPECT_NE(below, sheet.at(1, 1));
     EXPECT_TRUE(sheet.cells.is_back(below));
+}
+
+TEST(SurfaceCells, InterpolationIsTheMeanOfPicks) {
+    Floor floor(floor_builder());
+    std::vector<CellGather> gathers(floor.cells.size());
+    for (std::size_t i = 0; i < gathers.size(); ++i)
+        gathers[i] = {{static_cast<float>(i % 7), static_cast<float>(i % 5), 1.0f}, 1, 1};
+    ASSERT_TRUE(floor.cells.solve(gathers, {}, 1, floor.context).ok());
+    for (const auto& [x, z] : {std::pair{1.1f, 1.2f}, {0.02f, 3.97f}, {2.4f, 0.3f}}) {
+        const SurfaceCells::Place place = floor.place_of(x, z);
+        Vec3 mean{};
+        for (int i = 0; i < 100; ++i)
+            for (int j = 0; j < 100; ++j)
+                mean += floor.cells.irradiance(floor.cells.pick(
+                            place, {(static_cast<float>(i) + 0.5f) * 0.01f, (static_cast<float>(j) + 0.5f) * 0.01f})) *
+                        1e-4f;
+        // A hundred steps each way; neighbours differ by up to 6.
+        for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(floor.cells.irradiance(place)[c], mean[c], 2 * 6 * 0.01f);
+        EXPECT_NEAR(floor.cells.irradiance(place).z, 1.0f, 1e-5f);
+    }
 }
 
 TEST(SurfaceCells, JitterPicksTheNearestCells) {

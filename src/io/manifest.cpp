@@ -231,6 +231,8 @@ Json report_json(const ManifestInput& in, const Diagnostics& diagnostics) {
     out["predicted_memory_bytes"] = report.predicted_memory_bytes;
     out["samples_per_texel"] = report.samples_per_texel;
     out["estimated_nrmse"] = number(report.estimated_nrmse);
+    out["cell_bias"] = number(report.cell_bias);
+    out["cell_bias_error"] = number(report.cell_bias_error);
     out["share_within_error"] = number(report.share_within_error);
     out["mean_irradiance"] = report.mean_irradiance;
     out["warnings"] = warnings_json(diagnostics);

@@ -308,54 +308,51 @@ private:
 
 LightTree::LightTree(std::span<const LightBounds> lights) { const Builder build(lights, *this); }
 
-// How many of a node's units its first child gets: by importance, of what those that must be sampled leave over.
-std::uint32_t LightTree::first_share(const Node& node, std::uint32_t index, std::uint32_t units,
-                                     const Receiver& receiver) const {
+// By importance, of what those that must be sampled leave over.
+LightTree::Shares LightTree::shares(std::uint32_t index, std::uint32_t units, const Receiver& receiver) const {
+    const Node& node = nodes_[index];
     const Node &first = nodes_[index + 1], &second = nodes_[node.second];
     const double a = importance(first.bounds, receiver), b = importance(second.bounds, receiver);
-    if (!(b > 0.0)) return a > 0.0 ? units : 0;
-    if (!(a > 0.0)) return 0;
+    if (!(b > 0.0)) return {a > 0.0 ? units : 0, 0};
+    if (!(a > 0.0)) return {0, units};
     const double free_units = static_cast<double>(units - node.guaranteed);
     const auto share = static_cast<std::uint32_t>(std::min(1.0, a / (a + b)) * free_units + 0.5);
-    return first.guaranteed + share;
+    return {first.guaranteed + share, units - first.guaranteed - share};
+}
+
+// A tree of one light has no node that asks for its importance.
+bool LightTree::reaches(const Receiver& receiver) const {
+    return !nodes_.empty() && (nodes_[0].light == kNoLight || importance(nodes_[0].bounds, receiver) > 0.0);
 }
 
 LightTree::Chosen LightTree::choose(const Receiver& receiver, float u) const {
-    if (nodes_.empty() || !(importance(nodes_[0].bounds, receiver) > 0.0)) return {};
+    if (!reaches(receiver)) return {};
     auto unit = std::min(static_cast<std::uint32_t>(u * 0x1p24f), kUnits - 1);
     std::uint32_t index = 0, units = kUnits;
     while (nodes_[index].light == kNoLight) {
-        const Node& node = nodes_[index];
-        const std::uint32_t first = first_share(node, index, units, receiver);
+        const auto [first, second] = shares(index, units, receiver);
+        if (first + second == 0) return {};  // though their common bound may light the receiver
         if (unit < first) {
             units = first;
             index = index + 1;
         } else {
             unit -= first;
-            units -= first;
-            index = node.second;
-            // Neither child lights the receiver, though their common bound may.
-            if (first == 0 && !(importance(nodes_[index].bounds, receiver) > 0.0)) return {};
+            units = second;
+            index = nodes_[index].second;
         }
     }
     return {nodes_[index].light, units};
 }
 
 std::uint32_t LightTree::units_of(const Receiver& receiver, std::uint32_t light) const {
-    if (nodes_.empty() || !(importance(nodes_[0].bounds, receiver) > 0.0)) return 0;
+    if (!reaches(receiver)) return 0;
     std::uint64_t trail = trail_[light];
     std::uint32_t index = 0, units = kUnits;
     for (; nodes_[index].light == kNoLight && units > 0; trail >>= 1) {
-        const Node& node = nodes_[index];
-        const std::uint32_t first = first_share(node, index, units, receiver);
-        if ((trail & 1u) == 0) {
-            units = first;
-            index = index + 1;
-        } else {
-            units -= first;
-            index = node.second;
-            if (first == 0 && !(importance(nodes_[index].bounds, receiver) > 0.0)) return 0;
-        }
+        const auto [first, second] = shares(index, units, receiver);
+        const bool to_second = (trail & 1u) != 0;
+        units = to_second ? second : first;
+        index = to_second ? nodes_[index].second : index + 1;
     }
     return nodes_[index].light == light ? units : 0;
 }

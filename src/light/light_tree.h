@@ -44,8 +44,12 @@ private:
     };
     class Builder;
 
-    [[nodiscard]] std::uint32_t first_share(const Node& node, std::uint32_t index, std::uint32_t units,
-                                            const Receiver& receiver) const;
+    // What the children of a node get of its units; both nothing where neither lights the receiver.
+    struct Shares {
+        std::uint32_t first, second;
+    };
+    [[nodiscard]] Shares shares(std::uint32_t index, std::uint32_t units, const Receiver& receiver) const;
+    [[nodiscard]] bool reaches(const Receiver& receiver) const;
 
     std::vector<Node> nodes_;
     std::vector<std::uint64_t> trail_;  // of each light: bit d says whether to take the second child at depth d

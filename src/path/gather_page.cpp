@@ -1,6 +1,8 @@
 #include "path/gather_page.h"
 
 #include <array>
+#include <numeric>
+#include <vector>
 
 #include "base/cancelled.h"
 #include "base/check.h"
@@ -44,14 +46,11 @@ void clear_outside(RadianceSums& sums, std::size_t begin, std::size_t end) {
     }
 }
 
-}  // namespace
-
-Result<RadianceSums> gather_blocks(const TexelBlocks& blocks, const TexelBuffer& texels, const ChartSet& charts,
-                                   const Atlas& atlas, const Transport& transport, const PathOptions& options,
-                                   Context& context, std::size_t room) {
-    RadianceSums sums;
-    sums.reserve(room);
-    sums.resize(texels.size());
+// `index_of(b)`: where in the sums the texels of block b go.
+template <class IndexOf>
+Status gather(const TexelBlocks& blocks, const TexelBuffer& texels, const ChartSet& charts, const Atlas& atlas,
+              const Transport& transport, const PathOptions& options, IndexOf&& index_of, RadianceSums& sums,
+              Context& context) {
     const PathIntegrator integrator(transport, options);
     std::vector<PathIntegrator::WorkspacePtr> workspaces(context.threads());
     for (auto& workspace : workspaces) workspace = integrator.make_workspace();
@@ -62,10 +61,27 @@ Result<RadianceSums> gather_blocks(const TexelBlocks& blocks, const TexelBuffer&
         [&](const ChunkRange& range) {
             const auto block = blocks.block(range.begin);
             sites[range.worker].read(block, texels, transport, charts, atlas);
-            integrator.gather_texels(sites[range.worker].sites(), block, *workspaces[range.worker], sums, context);
+            integrator.gather_texels(sites[range.worker].sites(), index_of(range.begin), *workspaces[range.worker],
+                                     sums, context);
         },
         "trace", [&] { return transport.tracer.statistics().rays - rays_before; });
     if (!done || context.cancelled()) return cancelled_error();
+    return success();
+}
+
+}  // namespace
+
+Result<RadianceSums> gather_blocks(const TexelBlocks& blocks, const TexelBuffer& texels, const ChartSet& charts,
+                                   const Atlas& atlas, const Transport& transport, const PathOptions& options,
+                                   Context& context) {
+    RadianceSums sums;
+    sums.resize(blocks.texels.size());
+    std::vector<std::uint32_t> places(blocks.texels.size());
+    std::iota(places.begin(), places.end(), 0u);
+    const auto index_of = [&](std::size_t b) {
+        return std::span<const std::uint32_t>(places).subspan(blocks.first[b], blocks.first[b + 1] - blocks.first[b]);
+    };
+    LUMEL_TRY_STATUS(gather(blocks, texels, charts, atlas, transport, options, index_of, sums, context));
     return sums;
 }
 
@@ -74,7 +90,11 @@ Result<RadianceSums> gather_page(const TexelBuffer& texels, const ChartSet& char
                                  std::size_t count, Context& context, std::size_t room) {
     LUMEL_CHECK(first + count <= texels.size(), first, count, texels.size());
     const TexelBlocks blocks = make_texel_blocks(texels, first, first + count);
-    LUMEL_TRY(RadianceSums sums, gather_blocks(blocks, texels, charts, atlas, transport, options, context, room));
+    RadianceSums sums;
+    sums.reserve(room);
+    sums.resize(texels.size());
+    const auto index_of = [&](std::size_t b) { return blocks.block(b); };
+    LUMEL_TRY_STATUS(gather(blocks, texels, charts, atlas, transport, options, index_of, sums, context));
     clear_outside(sums, first, first + count);
     return sums;
 }

@@ -16,9 +16,9 @@ Result<RadianceSums> gather_page(const TexelBuffer& texels, const ChartSet& char
                                  const Transport& transport, const PathOptions& options, std::size_t first,
                                  std::size_t count, Context& context, std::size_t room = 0);
 
-// Some blocks of the page alone.
+// Some blocks of the page alone: sums of blocks.texels, in that order.
 Result<RadianceSums> gather_blocks(const TexelBlocks& blocks, const TexelBuffer& texels, const ChartSet& charts,
                                    const Atlas& atlas, const Transport& transport, const PathOptions& options,
-                                   Context& context, std::size_t room = 0);
+                                   Context& context);
 
 }  // namespace lumel

@@ -19,11 +19,11 @@ constexpr double kMakeWork = 3.0, kSolveWork = 1.0;
 }  // namespace
 
 double texels_per_cell(const Atlas& atlas, std::uint32_t samples) {
-    constexpr double kTexelsPerCell = 4.0, kSamplesOfThat = 256.0;
+    constexpr double kTexelsPerCell = 2.8, kSamplesOfThat = 256.0, kMostTexelsPerCell = 8.0;
     double texels = 0.0;
     for (const AtlasPage& page : atlas.pages) texels += static_cast<double>(page.width) * page.height;
-    const double by_noise = std::clamp(kTexelsPerCell * std::sqrt(kSamplesOfThat / static_cast<double>(samples)), 1.0,
-                                       2.0 * kTexelsPerCell);
+    const double by_noise =
+        std::clamp(kTexelsPerCell * std::sqrt(kSamplesOfThat / static_cast<double>(samples)), 1.0, kMostTexelsPerCell);
     return std::max(by_noise, std::sqrt(texels / kMostCells));
 }
 

@@ -10,7 +10,7 @@
 
 namespace lumel {
 
-// Edge of the cells of a bake in texels of its atlas, for so many samples per texel: four at 256, falling with the
+// Edge of the cells of a bake in texels of its atlas, for so many samples per texel: 2.8 at 256, falling with the
 // square root of the count, so that what their steps cost falls with the noise; larger where there would be more than
 // kMostCells.
 double texels_per_cell(const Atlas& atlas, std::uint32_t samples);

@@ -38,8 +38,8 @@ float total(const RadianceSums& sums, std::size_t i) {
 TEST(LightCells, TheirEdgeFallsWithTheRootOfTheSamples) {
     Atlas atlas;
     atlas.pages.push_back({512, 512});
-    EXPECT_EQ(texels_per_cell(atlas, 256), 4.0);
-    EXPECT_EQ(texels_per_cell(atlas, 1024), 2.0);
+    EXPECT_EQ(texels_per_cell(atlas, 256), 2.8);
+    EXPECT_EQ(texels_per_cell(atlas, 1024), 1.4);
     EXPECT_EQ(texels_per_cell(atlas, 1u << 20), 1.0);
     EXPECT_EQ(texels_per_cell(atlas, 1), 8.0);
     atlas.pages.assign(10, {4000, 4000});

@@ -37,4 +37,17 @@ TexelBlocks make_texel_blocks(const TexelBuffer& texels, std::size_t begin, std:
     return out;
 }
 
+TexelBlocks spread_blocks(const TexelBlocks& blocks, std::size_t texels) {
+    const std::size_t stride = std::max<std::size_t>(1, blocks.texels.size() / std::max<std::size_t>(1, texels));
+    TexelBlocks out;
+    out.first.push_back(0);
+    for (std::size_t b = std::min(stride / 2, blocks.size() - std::min<std::size_t>(1, blocks.size()));
+         b < blocks.size(); b += stride) {
+        const auto block = blocks.block(b);
+        out.texels.insert(out.texels.end(), block.begin(), block.end());
+        out.first.push_back(static_cast<std::uint32_t>(out.texels.size()));
+    }
+    return out;
+}
+
 }  // namespace lumel

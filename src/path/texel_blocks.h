@@ -25,4 +25,7 @@ struct TexelBlocks {
 // The blocks that hold any of the texels [begin, end): whole, for what a texel gathers must not depend on the range.
 TexelBlocks make_texel_blocks(const TexelBuffer& texels, std::size_t begin, std::size_t end);
 
+// Of blocks, every so many-th, so that they hold about that many texels; at least one, where there is one.
+TexelBlocks spread_blocks(const TexelBlocks& blocks, std::size_t texels);
+
 }  // namespace lumel

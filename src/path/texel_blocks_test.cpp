@@ -45,5 +45,18 @@ TEST(TexelBlocks, OfARangeAreWholeAndNoMore) {
     EXPECT_EQ(make_texel_blocks(room.texels, 7, 7).size(), 0u);
 }
 
+TEST(TexelBlocks, ASpreadOfThemComesFromAllOverThePage) {
+    Context context(1);
+    const test::ChartedScene room(test::room(), 6, context);
+    const TexelBlocks all = make_texel_blocks(room.texels, 0, room.texels.size());
+    ASSERT_GT(all.size(), 16u);
+    const TexelBlocks some = spread_blocks(all, all.texels.size() / 4);
+    EXPECT_EQ(some.size(), (all.size() + 1) / 4);
+    for (std::size_t b = 0; b < some.size(); ++b) EXPECT_TRUE(std::ranges::equal(some.block(b), all.block(4 * b + 2)));
+    EXPECT_EQ(spread_blocks(all, all.texels.size()).texels, all.texels);
+    EXPECT_EQ(spread_blocks(all, 1).size(), 1u);
+    EXPECT_EQ(spread_blocks(make_texel_blocks(room.texels, 0, 0), 8).size(), 0u);
+}
+
 }  // namespace
 }  // namespace lumel

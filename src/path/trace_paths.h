@@ -266,26 +266,30 @@ void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w
                                        hit.t, hit.back_face, bounced));
             if (bounce == options_.bounces || (triangle.flags & kOccluderOnly)) continue;
 
+            const Vec3 albedo = SurfaceReader::finish(w.albedo[i]);
+            if (is_black(albedo)) continue;
+            if (cells) {
+                const SurfaceCells::Place place = cells->find(hit.triangle, hit.b1, hit.b2, hit.back_face);
+                if (place.home != kNone && !(first && hit.t < kNearHit * cells->edge(place.home))) {
+                    const Vec3 share = w.throughput[lane] * albedo;
+                    if constexpr (Sink::kFromCell) {
+                        const Sampler sampler(starts[lane].key, starts[lane].index);
+                        const std::uint32_t cell = cells->pick(place, sampler.pair(first_pair + kDirectionPair));
+                        sink.link(lane, w.first_direction[lane], w.first_pdf[lane], cell, share);
+                    } else {
+                        w.bounced[lane] += share * cells->irradiance(place);
+                    }
+                    continue;
+                }
+            }
+
             // The path stands on a new surface.
             const float side = hit.back_face ? -1.0f : 1.0f;
             vertex.face_normal = geometry.geometric_normal(hit.triangle) * side;
             vertex.normal = geometry.shading_normal(hit.triangle, hit.b1, hit.b2) * side;
             vertex.position = offset_origin(geometry, hit.triangle, hit.b1, hit.b2, vertex.face_normal);
             vertex.triangle = hit.triangle;
-            vertex.reflectance = SurfaceReader::finish(w.albedo[i]) * kInvPi;
-            if (is_black(vertex.reflectance)) continue;
-            if (cells) {
-                const Vec2 jitter = Sampler(starts[lane].key, starts[lane].index).pair(first_pair + kDirectionPair);
-                const auto [home, cell] = cells->find(hit.triangle, hit.b1, hit.b2, hit.back_face, jitter);
-                if (home != kNone && !(first && hit.t < kNearHit * cells->edge(home))) {
-                    const Vec3 share = w.throughput[lane] * vertex.reflectance * kPi;
-                    if constexpr (Sink::kFromCell)
-                        sink.link(lane, w.first_direction[lane], w.first_pdf[lane], cell, share);
-                    else
-                        w.bounced[lane] += share * cells->irradiance(cell);
-                    continue;
-                }
-            }
+            vertex.reflectance = albedo * kInvPi;
             w.lanes[kept++] = lane;
         }
         alive = kept;

@@ -1,0 +1,37 @@
+// What surface cells get wrong, measured in the bake itself: some of its texels are gathered twice, once with paths
+// that end at cells and once with paths that go on to the end.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+
+#include "path/path_integrator.h"
+#include "path/texel_blocks.h"
+#include "texel/texel_buffer.h"
+
+namespace lumel {
+
+// Over blocks of texels: light with cells less light without, over the latter (luminance of the included layers).
+class CellBias {
+public:
+    // The mean light of so many texels of one block.
+    void add(double with_cells, double without, double texels);
+
+    // NaN: not measured, or there is no light.
+    [[nodiscard]] double relative() const;
+    // Of that, by how much blocks differ; NaN below two blocks. Both halves of a block start with the same rays, so
+    // that most of what is left is the noise of the paths beyond the cells.
+    [[nodiscard]] double standard_error() const;
+
+private:
+    double blocks_ = 0.0;
+    double difference_ = 0.0, light_ = 0.0;  // sums
+    double difference_squares_ = 0.0, light_squares_ = 0.0, products_ = 0.0;
+};
+
+// Adds a page, of which it looks at about one texel in 64. `transport` has cells. Costs some 2 % of a bake of 256
+// samples. Error: cancelled.
+Status measure_cell_bias(const TexelBuffer& texels, const ChartSet& charts, const Atlas& atlas,
+                         const Transport& transport, const PathOptions& options, CellBias& bias, Context& context);
+
+}  // namespace lumel
