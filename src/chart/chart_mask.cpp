@@ -1,27 +1,6 @@
 #include "chart/chart_mask.h"
 
-#include <bit>
-
 namespace lumel {
-
-void ChartMask::set_span(std::uint32_t y, std::uint32_t x0, std::uint32_t x1) {
-    std::uint64_t* row = &bits[std::size_t{y} * words_per_row];
-    const std::uint32_t first = x0 / 64, last = (x1 - 1) / 64;
-    const std::uint64_t head = ~std::uint64_t{0} << (x0 % 64), tail = ~std::uint64_t{0} >> (63 - (x1 - 1) % 64);
-    if (first == last) {
-        row[first] |= head & tail;
-        return;
-    }
-    row[first] |= head;
-    for (std::uint32_t w = first + 1; w < last; ++w) row[w] = ~std::uint64_t{0};
-    row[last] |= tail;
-}
-
-std::uint64_t ChartMask::count() const {
-    std::uint64_t set = 0;
-    for (const std::uint64_t word : bits) set += static_cast<std::uint64_t>(std::popcount(word));
-    return set;
-}
 
 TexelMap fit_to_centres(Vec2 low, Vec2 high, std::uint32_t width, std::uint32_t height, double x, double y) {
     const double size_x = double{high.x} - low.x, size_y = double{high.y} - low.y;

@@ -12,27 +12,9 @@
 #include <vector>
 
 #include "chart/overlap.h"
+#include "pack/mask.h"
 
 namespace lumel {
-
-// Rows of bits, each row starting a new word; bit x of a row is bit x % 64 of word x / 64.
-struct ChartMask {
-    std::uint32_t width = 0, height = 0, words_per_row = 0;
-    std::uint64_t used = 0;     // bits set
-    std::uint64_t covered = 0;  // those whose own square meets the chart: what becomes a texel of the bake
-    std::vector<std::uint64_t> bits;
-
-    ChartMask() = default;
-    ChartMask(std::uint32_t w, std::uint32_t h)
-        : width(w), height(h), words_per_row((w + 63) / 64), bits(std::size_t{words_per_row} * h, 0) {}
-
-    [[nodiscard]] bool get(std::uint32_t x, std::uint32_t y) const {
-        return (bits[std::size_t{y} * words_per_row + x / 64] >> (x % 64)) & 1;
-    }
-    // Sets x0 .. x1 - 1 of a row.
-    void set_span(std::uint32_t y, std::uint32_t x0, std::uint32_t x1);
-    [[nodiscard]] std::uint64_t count() const;  // bits set
-};
 
 // uv_texels = uv * scale + offset, in double precision.
 struct TexelMap {

@@ -1,0 +1,80 @@
+#include "pack/fill_page.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/check.h"
+#include "base/parallel.h"
+#include "pack/large_charts.h"
+#include "pack/tiny_charts.h"
+
+namespace lumel {
+namespace {
+
+// Rows that no page ever reaches.
+constexpr std::uint32_t kNoLimit = 1u << 30;
+
+struct Sorted {
+    std::vector<std::uint32_t> large, tiny;  // kinds
+    std::uint32_t max_level = 1;
+};
+
+Sorted sort_kinds(const Kinds& kinds) {
+    Sorted out;
+    for (std::uint32_t k = 0; k < kinds.kinds.size(); ++k) {
+        const ChartMask& mask = *kinds.kinds[k].mask;
+        if (is_tiny(mask)) {
+            out.tiny.push_back(k);
+        } else {
+            out.large.push_back(k);
+            out.max_level = std::max(out.max_level, level_of(mask));
+        }
+    }
+    return out;
+}
+
+std::vector<Strategy> strategies(std::size_t charts, Orientations orientations) {
+    (void)charts;
+    Strategy plain;
+    plain.turn_large = orientations == Orientations::eight;
+    plain.turn_tiny = orientations != Orientations::one;
+    return {plain};
+}
+
+PageFill fill(const Kinds& kinds, const Sorted& sorted, const Strategy& strategy, std::size_t charts,
+              const FillOptions& options, const Context& context) {
+    PageWork work(kinds, strategy, options.width, options.height == 0 ? kNoLimit : options.height, sorted.max_level,
+                  charts);
+    work.cancelled = [&context] { return context.cancelled(); };
+    if (options.progress)
+        work.progress = [&] {
+            context.report("pack", static_cast<double>(work.fill.placed) / static_cast<double>(charts));
+        };
+    place_large_charts(work, sorted.large);
+    place_tiny_charts(work, sorted.tiny);
+    return std::move(work.fill);
+}
+
+bool is_better(const PageFill& a, const PageFill& b) { return a.used != b.used ? a.used > b.used : a.height < b.height; }
+
+}  // namespace
+
+PageFill fill_page(std::span<const ChartMask> masks, std::span<const std::uint32_t> mask_of, const FillOptions& options,
+                   Context& context) {
+    LUMEL_CHECK(options.width > 0 && options.width <= FreeMap::kMaxWidth, options.width);
+    const Kinds kinds = group_equal(masks, mask_of);
+    const Sorted sorted = sort_kinds(kinds);
+    const std::vector<Strategy> all = strategies(mask_of.size(), options.orientations);
+    FillOptions quiet = options;
+    quiet.progress = options.progress && all.size() == 1;
+    std::vector<PageFill> fills(all.size());
+    parallel_for(context, all.size(), 1, [&](const ChunkRange& range) {
+        fills[range.index] = fill(kinds, sorted, all[range.index], mask_of.size(), quiet, context);
+    });
+    std::size_t best = 0;
+    for (std::size_t i = 1; i < fills.size(); ++i)
+        if (is_better(fills[i], fills[best])) best = i;
+    return std::move(fills[best]);
+}
+
+}  // namespace lumel

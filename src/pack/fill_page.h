@@ -1,0 +1,32 @@
+// Fills one page with as many charts as fit, as densely as can be: the large charts first, then the tiny ones into what
+// they left.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "lumel/context.h"
+#include "pack/mask.h"
+#include "pack/page_work.h"
+
+namespace lumel {
+
+enum class Orientations : std::uint8_t {
+    automatic,  // all of tiny charts, and of large ones where the charts are so few that it helps
+    one,        // none is turned
+    eight,      // all of all charts
+};
+
+struct FillOptions {
+    std::uint32_t width = 0;            // texels, 1 .. FreeMap::kMaxWidth
+    std::uint32_t height = 0;           // most rows; 0: as many as it takes
+    Orientations orientations = Orientations::automatic;
+    bool progress = true;               // reports the stage "pack"
+};
+
+// `mask_of`: the mask of each chart. Several strategies are tried where the charts are few; the best one's result is
+// returned. The same for any number of threads. Where the context is cancelled the result is incomplete.
+PageFill fill_page(std::span<const ChartMask> masks, std::span<const std::uint32_t> mask_of, const FillOptions& options,
+                   Context& context);
+
+}  // namespace lumel
