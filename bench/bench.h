@@ -10,6 +10,7 @@ void add_trace(CLI::App& app);      // rays per second
 void add_texels(CLI::App& app);     // rasterising pages, sample points
 void add_replay(CLI::App& app);     // the bake against its own rays
 void add_transport(CLI::App& app);  // error against cost, method by method
+void add_pack(CLI::App& app);       // chart masks: texels used, time
 
 // CPU time of the process, all threads together: the machine's other work does not count.
 class CpuStopwatch {

@@ -11,6 +11,7 @@ int main(int argc, char** argv) {
     lumel::bench::add_texels(app);
     lumel::bench::add_replay(app);
     lumel::bench::add_transport(app);
+    lumel::bench::add_pack(app);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -24,6 +24,7 @@ Run add_info(CLI::App& app);
 Run add_bake(CLI::App& app);
 Run add_render(CLI::App& app);
 Run add_compare(CLI::App& app);
+Run add_pack(CLI::App& app);
 
 // Values that several commands parse -------------------------------------------------------------------------------
 

@@ -50,6 +50,7 @@ int main(int argc, char** argv) {
     add("bake", "Bake a scene's lighting", add_bake);
     add("render", "Path-traced picture of a scene, or the same view lit by a bake", add_render);
     add("compare", "How far two images are apart", add_compare);
+    add("pack", "Pack raw chart masks into an atlas", add_pack);
 
     try {
         app.parse(argc, argv);

@@ -1,4 +1,5 @@
-// lumel_samples FOLDER [gallery | town BUILDINGS]: writes sample scenes.
+// lumel_samples FOLDER [gallery | town BUILDINGS | charts COUNT [SEED]]: writes sample scenes and chart masks.
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
@@ -8,15 +9,20 @@
 int main(int argc, char** argv) {
     using namespace lumel;
     const std::string which = argc > 2 ? argv[2] : "gallery";
-    if (argc < 2 || (which != "gallery" && which != "town") || (which == "town" && argc < 4)) {
-        std::fprintf(stderr, "usage: lumel_samples FOLDER [gallery | town BUILDINGS]\n");
+    const bool counted = which == "town" || which == "charts";
+    if (argc < 2 || (which != "gallery" && !counted) || (counted && argc < 4)) {
+        std::fprintf(stderr, "usage: lumel_samples FOLDER [gallery | town BUILDINGS | charts COUNT [SEED]]\n");
         return 2;
     }
+    const auto number = [&](int i) {
+        return argc > i ? static_cast<std::uint32_t>(std::strtoul(argv[i], nullptr, 10)) : 1u;
+    };
     std::error_code ignored;
     std::filesystem::create_directories(argv[1], ignored);
     const Status status =
-        which == "town" ? samples::write_town(argv[1], static_cast<std::uint32_t>(std::strtoul(argv[3], nullptr, 10)))
-                        : samples::write_gallery(argv[1]);
+        which == "town"     ? samples::write_town(argv[1], number(3))
+        : which == "charts" ? samples::write_charts(argv[1], std::max(1u, number(3)), number(4))
+                            : samples::write_gallery(argv[1]);
     if (status.ok()) return 0;
     std::fprintf(stderr, "lumel_samples: %s\n", status.error().text().c_str());
     return 1;

@@ -13,4 +13,7 @@ Status write_gallery(const std::filesystem::path& folder);
 // A level of `buildings` instanced houses on streets: for tests of size. About 41 charts a house.
 Status write_town(const std::filesystem::path& folder, std::uint32_t buildings);
 
+// Chart masks for `lumel pack`, level.msk: see level_masks.h.
+Status write_charts(const std::filesystem::path& folder, std::uint32_t charts, std::uint64_t seed);
+
 }  // namespace lumel::samples

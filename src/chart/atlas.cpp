@@ -53,7 +53,8 @@ public:
         LUMEL_TRY_STATUS(fixed ? fit_resolution() : fill_pages());
         atlas.texels_per_metre = sized_.reached;
         atlas.least_texels_per_metre = sized_.least;
-        for (const PackPage& page : packing_.pages) atlas.pages.push_back({page.width, page.height});
+        for (const PackPage& page : packing_.pages) atlas.pages.push_back({page.width * cell(), page.height * cell()});
+        if (fixed) atlas.pages.front() = {options_.resolution_width, options_.resolution_height};
         for (std::size_t k = 0; k < instances_.size(); ++k) atlas.placements.push_back(placement(k));
         return atlas;
     }
@@ -61,7 +62,8 @@ public:
 private:
     // Pages as needed, at the density asked or solved for.
     Status fill_pages() {
-        const SizeLimit limit{options_.max_page, options_.max_page};
+        const SizeLimit limit = SizeLimit::of_page(options_.max_page, options_.max_page, options_.masks);
+        if (limit.width < 2) return no_room();
         density_ = options_.texels_per_metre;
         if (!(density_ > 0.0)) {
             // A budget that the smallest charts eat by more than half is too small to be meant.
@@ -69,7 +71,7 @@ private:
             LUMEL_TRY(density_, solve_density(charts_, instances_, budget, BudgetOf::baked, limit, context_));
         }
         if (!draw(limit)) return cancelled_error();
-        packing_ = pack(sized_.masks, items(), options_.max_page, cancelled_);
+        packing_ = pack(sized_.masks, items(), options_.max_page / cell(), context_);
         if (!packing_.complete) return cancelled_error();
         report_clamped();
         return success();
@@ -79,14 +81,15 @@ private:
     // of three percent of its texels.
     Status fit_resolution() {
         constexpr double kStep = 0.97;
-        const SizeLimit limit{options_.resolution_width, options_.resolution_height};
+        const SizeLimit limit =
+            SizeLimit::of_page(options_.resolution_width, options_.resolution_height, options_.masks);
         if (limit.width < 2 || limit.height < 2) return no_room();
         if (options_.texels_per_metre > 0.0) {
             density_ = options_.texels_per_metre;
             LUMEL_TRY(const bool fits, try_resolution(limit));
             return fits ? success() : no_room();
         }
-        const double page = static_cast<double>(limit.width) * limit.height;
+        const double page = page_texels();
         for (double texels = 0.99 * page; texels > least_texels(instances_); texels *= kStep) {
             LUMEL_TRY(density_, solve_density(charts_, instances_, texels, BudgetOf::page, limit, context_));
             LUMEL_TRY(const bool fits, try_resolution(limit));
@@ -97,16 +100,23 @@ private:
 
     Result<bool> try_resolution(SizeLimit limit) {
         if (!draw(limit)) return cancelled_error();
-        if (sized_.used > std::uint64_t{limit.width} * limit.height) return false;
-        packing_ = pack_one_page(sized_.masks, items(), limit.width, limit.height, cancelled_);
+        if (static_cast<double>(sized_.used) > page_texels()) return false;
+        packing_ = pack_one_page(sized_.masks, items(), options_.resolution_width / cell(),
+                                 options_.resolution_height / cell(), context_);
         if (context_.cancelled()) return cancelled_error();
         if (packing_.complete) report_clamped();
         return packing_.complete;
     }
 
+    [[nodiscard]] std::uint32_t cell() const { return options_.masks.cell(); }
+    [[nodiscard]] double page_texels() const {
+        return static_cast<double>(options_.resolution_width) * options_.resolution_height;
+    }
+
     [[nodiscard]] Error no_room() const {
-        const std::string size =
-            std::to_string(options_.resolution_width) + "x" + std::to_string(options_.resolution_height);
+        const bool fixed = options_.resolution_width != 0;
+        const std::string size = std::to_string(fixed ? options_.resolution_width : options_.max_page) + "x" +
+                                 std::to_string(fixed ? options_.resolution_height : options_.max_page);
         return {ErrorCode::usage,
                 "the " + std::to_string(instances_.size()) + " charts do not fit one page of " + size + " texels",
                 scene_.source,
@@ -137,10 +147,12 @@ private:
     }
 
     [[nodiscard]] ChartPlacement placement(std::size_t k) const {
-        const ChartMask& mask = sized_.masks[sized_.mask_of[k]];
+        const auto [width, height] = sized_.sizes[sized_.mask_of[k]];
         const Chart& chart = charts_.meshes[instances_[k].mesh].charts[instances_[k].chart];
         const PackSpot& spot = packing_.spots[k];
-        const TexelMap map = fit_to_centres(chart.min, chart.max, mask.width, mask.height, spot.x, spot.y);
+        const double inset = options_.masks.inset() - 0.5;
+        const TexelMap map = fit_to_centres(chart.min, chart.max, width, height, spot.x * cell() + inset,
+                                            spot.y * cell() + inset);
         return {spot.page,
                 {static_cast<float>(map.scale_x), static_cast<float>(map.scale_y)},
                 {static_cast<float>(map.offset_x), static_cast<float>(map.offset_y)}};
@@ -150,7 +162,6 @@ private:
     const ChartSet& charts_;
     const ChartOptions& options_;
     Context& context_;
-    const std::function<bool()> cancelled_ = [this] { return context_.cancelled(); };
     std::vector<ChartInstance> instances_;
     double density_ = 0.0;
     SizedCharts sized_;

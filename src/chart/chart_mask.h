@@ -1,4 +1,4 @@
-// The texels of a chart: those that a bilinear 2x2 lookup of any of its points can touch.
+// The texels of a chart: those that a lookup of any of its points can touch, under the filter that is declared.
 //
 // Based on: O'Donnell, "Precomputed Global Illumination in Frostbite" (2018): a texel belongs to a chart if the box of
 // side 2 around its centre meets one of the chart's triangles; the chart's box is fitted to texel centres, so that its
@@ -21,6 +21,30 @@ struct TexelMap {
     double scale_x = 1.0, scale_y = 1.0, offset_x = 0.0, offset_y = 0.0;
 };
 
+// What the runtime does with the lightmap. A cell is the smallest piece of a page that a chart has for itself: a texel
+// of the lowest mip, or a block. Masks are in cells, and charts lie on whole ones.
+struct MaskRule {
+    enum class Filter : std::uint8_t { bilinear, bicubic };  // 2 x 2 texels, 4 x 4
+
+    Filter filter = Filter::bilinear;
+    std::uint32_t mips = 0;   // lookups in mips 0..this one, 0..6: their texels hold the light of one chart, too
+    std::uint32_t block = 1;  // 4: no block of 4 x 4 texels of the page (mip 0) holds two charts, for BC formats
+
+    [[nodiscard]] std::uint32_t mip_texel() const { return 1u << mips; }
+    [[nodiscard]] std::uint32_t cell() const { return mip_texel() > block ? mip_texel() : block; }
+    // How far a texel is from a point that reads it, at most, in texels of its mip.
+    [[nodiscard]] std::uint32_t reach() const { return filter == Filter::bicubic ? 2 : 1; }
+    // From the corner of a mask to the low corner of its chart, texels: the centre of the first texel of the lowest mip
+    // that has as many beside it as lookups reach.
+    [[nodiscard]] double inset() const { return (reach() - 0.5) * mip_texel(); }
+    // Cells of a chart whose box spans the centres of so many texels (2 or more, or 1 for one that is a point).
+    [[nodiscard]] std::uint32_t cells(std::uint32_t texels) const;
+    // The most texels whose cells fit this length of a page; 0 where not even one does.
+    [[nodiscard]] std::uint32_t texels_within(std::uint32_t length) const;
+
+    bool operator==(const MaskRule&) const = default;
+};
+
 // Calls span(y, x0, x1) for the texels x0 .. x1 - 1 of row y that belong to the triangle, clipped to width x height.
 // Open boxes: a triangle that only touches a box does not take it. Boxes reach as far from a texel's centre as a lookup
 // does; half a texel is the texel itself.
@@ -30,9 +54,9 @@ void for_each_mask_span(const UvTriangle& triangle, const TexelMap& map, std::ui
                         const Span& span, double reach = kLookupReach);
 
 // The mask of a chart whose box spans the centres of `width` x `height` texels: steps of (width - 1) x (height - 1).
-// `low` and `high` are the bounds of its UVs.
+// `low` and `high` are the bounds of its UVs. Size and `used` are in cells of the rule, `covered` in texels.
 ChartMask make_mask(std::span<const std::uint32_t> triangles, std::span<const UvTriangle> uv, Vec2 low, Vec2 high,
-                    std::uint32_t width, std::uint32_t height);
+                    std::uint32_t width, std::uint32_t height, const MaskRule& rule = {});
 
 // The map that puts `low` on the centre of texel (x, y) and `high` on that of (x + width - 1, y + height - 1).
 TexelMap fit_to_centres(Vec2 low, Vec2 high, std::uint32_t width, std::uint32_t height, double x, double y);

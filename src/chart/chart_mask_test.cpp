@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <numeric>
 
 #include "support/chart_checker.h"
@@ -94,6 +96,86 @@ TEST(ChartMask, CountsTheTexelsThatTheChartCoversItself) {
     // next diagonal, of 8 texels.
     EXPECT_EQ(mask.covered, 45u);
     EXPECT_EQ(mask.used, 53u);
+}
+
+// ---- Rules ----------------------------------------------------------------------------------------------------------
+
+using Filter = MaskRule::Filter;
+
+// Points of a triangle and the texels of every mip that the filter weighs there, by its definition: 2 x 2 or 4 x 4
+// texels around the point. All of them must lie in cells of the mask.
+TEST(MaskRule, HoldsEveryTexelThatALookupTouches) {
+    test::Random random(21);
+    std::uint64_t tested = 0;
+    for (const Filter filter : {Filter::bilinear, Filter::bicubic})
+        for (const std::uint32_t mips : {0u, 1u, 3u})
+            for (const std::uint32_t block : {1u, 4u}) {
+                const MaskRule rule{filter, mips, block};
+                for (int n = 0; n < 30; ++n) {
+                    const std::uint32_t width = 2 + random.bits() % 50, height = 2 + random.bits() % 50;
+                    const UvTriangle t{random.pair(), random.pair(), random.pair()};
+                    const Vec2 low{std::min({t[0].x, t[1].x, t[2].x}), std::min({t[0].y, t[1].y, t[2].y})};
+                    const Vec2 high{std::max({t[0].x, t[1].x, t[2].x}), std::max({t[0].y, t[1].y, t[2].y})};
+                    const std::vector<std::uint32_t> all{0};
+                    const ChartMask mask = make_mask(all, std::span(&t, 1), low, high, width, height, rule);
+                    ASSERT_EQ(mask.width, rule.cells(width));
+                    const TexelMap map = fit_to_centres(low, high, width, height, rule.inset() - 0.5, rule.inset() - 0.5);
+                    for (int k = 0; k < 60; ++k) {
+                        const float a = k < 3 ? 0.0f : random.unit(), b = k < 3 ? 0.0f : (1.0f - a) * random.unit();
+                        const auto mix = [&](float p, float q, float r) { return double{p + (q - p) * a + (r - p) * b}; };
+                        const auto c = static_cast<std::size_t>(k % 3);
+                        const Vec2 p0 = t[c], p1 = t[(c + 1) % 3], p2 = t[(c + 2) % 3];
+                        const double x = mix(p0.x, p1.x, p2.x) * map.scale_x + map.offset_x;
+                        const double y = mix(p0.y, p1.y, p2.y) * map.scale_y + map.offset_y;
+                        for (std::uint32_t mip = 0; mip <= mips; ++mip) {
+                            const double side = std::exp2(mip);
+                            // Masks leave out what is reached by less than 1e-4 of a texel of the lowest mip.
+                            const double reach = rule.reach() - 2e-4 * rule.mip_texel() / side;
+                            for (double j = std::floor(y / side - 0.5) - 1; j <= y / side + 2; ++j)
+                                for (double i = std::floor(x / side - 0.5) - 1; i <= x / side + 2; ++i) {
+                                    if (std::abs(i + 0.5 - x / side) >= reach || std::abs(j + 0.5 - y / side) >= reach)
+                                        continue;
+                                    ++tested;
+                                    ASSERT_TRUE(i >= 0 && j >= 0);
+                                    const auto u = static_cast<std::uint32_t>(i * side / rule.cell());
+                                    const auto v = static_cast<std::uint32_t>(j * side / rule.cell());
+                                    ASSERT_TRUE(u < mask.width && v < mask.height && mask.get(u, v))
+                                        << rule.reach() << " " << mips << " " << block << ": " << i << " " << j;
+                                }
+                        }
+                    }
+                }
+            }
+    EXPECT_GT(tested, 100000u);
+}
+
+// Rectangles by hand: no cell more than the filter needs.
+TEST(MaskRule, RectanglesTakeNoCellTooMany) {
+    const std::vector<UvTriangle> quad{{{{1, 2}, {4, 2}, {4, 4}}}, {{{1, 2}, {4, 4}, {1, 4}}}};
+    const std::vector<std::uint32_t> all{0, 1};
+    const auto cells = [&](const MaskRule& rule, std::uint32_t width, std::uint32_t height) {
+        const ChartMask mask = make_mask(all, quad, {1, 2}, {4, 4}, width, height, rule);
+        EXPECT_EQ(mask.used, std::uint64_t{mask.width} * mask.height);
+        EXPECT_EQ(mask.covered, std::uint64_t{width} * height);
+        return std::array{mask.width, mask.height};
+    };
+    using Cells = std::array<std::uint32_t, 2>;
+    EXPECT_EQ(cells({Filter::bicubic, 0, 1}, 5, 9), (Cells{7, 11}));   // a texel on each side
+    EXPECT_EQ(cells({Filter::bilinear, 0, 4}, 2, 5), (Cells{1, 2}));   // the smallest chart is one block
+    EXPECT_EQ(cells({Filter::bilinear, 2, 1}, 9, 10), (Cells{3, 4}));  // 8 steps are two texels of mip 2, 9 are more
+    EXPECT_EQ(cells({Filter::bicubic, 1, 4}, 2, 2), (Cells{2, 2}));    // two texels of mip 1 and two around them
+}
+
+TEST(MaskRule, WhatFitsAPageFitsIt) {
+    for (const Filter filter : {Filter::bilinear, Filter::bicubic})
+        for (const std::uint32_t mips : {0u, 1u, 3u})
+            for (const std::uint32_t block : {1u, 4u})
+                for (const std::uint32_t page : {64u, 100u, 257u}) {
+                    const MaskRule rule{filter, mips, block};
+                    const std::uint32_t texels = rule.texels_within(page);
+                    EXPECT_LE(rule.cells(texels) * rule.cell(), page);
+                    EXPECT_GT(rule.cells(texels + 1) * rule.cell(), page / rule.cell() * rule.cell());
+                }
 }
 
 }  // namespace

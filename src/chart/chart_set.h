@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "chart/chart_mask.h"
 #include "lumel/context.h"
 #include "lumel/result.h"
 #include "lumel/scene.h"
@@ -88,6 +89,7 @@ struct ChartOptions {
     std::uint32_t max_page = 4096;                              // largest page edge, texels, 64..16384
     double texels_per_metre = 0.0;                              // 0: solved from the budget
     double texel_budget = 250000.0;                             // texels, where no density is asked
+    MaskRule masks;                                             // what the runtime's lookups touch; not of kept layouts
 };
 
 // Two triangles of a TEXCOORD_1 that lie on top of each other.

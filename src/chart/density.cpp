@@ -116,11 +116,11 @@ Sized size_chart(const ChartSet& charts, const ChartInstance& c, double density,
     return {{c.mesh, c.chart, width, height}, size_x * size_y, share_x * share_y};
 }
 
-ChartMask draw(const ChartSet& charts, const Drawing& d) {
+ChartMask draw(const ChartSet& charts, const Drawing& d, const MaskRule& rule) {
     const MeshCharts& mesh = charts.meshes[d.mesh];
     const Chart& chart = mesh.charts[d.chart];
     return make_mask(std::span(mesh.order).subspan(chart.first, chart.count), mesh.uv, chart.min, chart.max, d.width,
-                     d.height);
+                     d.height, rule);
 }
 
 }  // namespace
@@ -166,14 +166,16 @@ std::optional<SizedCharts> size_charts(const ChartSet& charts, const std::vector
 
     sized.masks.resize(drawings.size());
     const bool done = parallel_for(context, drawings.size(), 64, [&](const ChunkRange& range) {
-        for (std::size_t i = range.begin; i < range.end; ++i) sized.masks[i] = draw(charts, drawings[i]);
+        for (std::size_t i = range.begin; i < range.end; ++i) sized.masks[i] = draw(charts, drawings[i], limit.rule);
     });
     if (!done) return std::nullopt;
+    const std::uint64_t cell_texels = std::uint64_t{limit.rule.cell()} * limit.rule.cell();
+    for (const Drawing& d : drawings) sized.sizes.push_back({d.width, d.height});
     sized.mask_of.reserve(instances.size());
     for (const Drawing& d : wanted) {
         const auto it = std::lower_bound(drawings.begin(), drawings.end(), d);
         sized.mask_of.push_back(static_cast<std::uint32_t>(it - drawings.begin()));
-        sized.used += sized.masks[sized.mask_of.back()].used;
+        sized.used += sized.masks[sized.mask_of.back()].used * cell_texels;
         sized.covered += sized.masks[sized.mask_of.back()].covered;
     }
     return sized;

@@ -1,6 +1,7 @@
 // How many texels each chart of each instance gets, and the density that meets a texel budget.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -23,7 +24,8 @@ std::vector<ChartInstance> chart_instances(const Scene& scene, const ChartSet& c
 
 // Charts drawn at one density. Charts that look alike share a mask.
 struct SizedCharts {
-    std::vector<ChartMask> masks;
+    std::vector<ChartMask> masks;  // in cells of the rule
+    std::vector<std::array<std::uint32_t, 2>> sizes;  // beside them: width and height of the box in texels
     std::vector<std::uint32_t> mask_of;   // beside the chart instances
     std::uint64_t used = 0, covered = 0;  // texels of all instances: on pages, and those that are baked
     std::vector<std::uint32_t> clamped;   // chart instances that the largest size cut down
@@ -31,7 +33,13 @@ struct SizedCharts {
 };
 
 struct SizeLimit {
-    std::uint32_t width = 0, height = 0;  // of a mask, texels, at least 2
+    std::uint32_t width = 0, height = 0;  // of a chart's box, texels, at least 2
+    MaskRule rule{};
+
+    // What fits a page of this size.
+    static SizeLimit of_page(std::uint32_t width, std::uint32_t height, const MaskRule& rule) {
+        return {rule.texels_within(width), rule.texels_within(height), rule};
+    }
 };
 
 // The box of a chart becomes a whole number of texel steps, the nearest to its size at this density but at least one: a
@@ -47,7 +55,7 @@ enum class BudgetOf : std::uint8_t { page, baked };
 Result<double> solve_density(const ChartSet& charts, const std::vector<ChartInstance>& instances, double budget,
                              BudgetOf what, SizeLimit limit, Context& context);
 
-// Every chart 2 x 2.
+// Every chart as small as can be: 2 x 2 texels.
 inline double least_texels(const std::vector<ChartInstance>& instances) {
     return 4.0 * static_cast<double>(instances.size());
 }

@@ -6,44 +6,14 @@
 #include <cmath>
 
 #include "lumel/scene.h"
-#include "support/statistics.h"
+#include "support/random_masks.h"
 
 namespace lumel {
 namespace {
 
-bool never() { return false; }
+using test::random_mask;
 
-ChartMask rectangle(std::uint32_t w, std::uint32_t h) {
-    ChartMask mask(w, h);
-    for (std::uint32_t y = 0; y < h; ++y) mask.set_span(y, 0, w);
-    mask.used = mask.count();
-    return mask;
-}
-
-// A rectangle, a triangle, an L or a frame.
-ChartMask random_mask(test::Random& random, std::uint32_t largest) {
-    // Extents fall off like 1 / size^2: many tiny charts, few large ones.
-    const auto extent = [&] {
-        const float size = 2.0f / (1.0f - random.unit() * (1.0f - 2.0f / static_cast<float>(largest)));
-        return static_cast<std::uint32_t>(size);
-    };
-    const std::uint32_t w = extent(), h = extent(), kind = random.bits() % 4;
-    ChartMask mask(w, h);
-    for (std::uint32_t y = 0; y < h; ++y) {
-        if (kind == 1) {
-            mask.set_span(y, 0, std::max(1u, w - y * w / h));
-        } else if (kind == 2 && y >= (h + 1) / 2) {
-            mask.set_span(y, 0, (w + 1) / 2);
-        } else if (kind == 3 && y > 0 && y + 1 < h && w > 2) {
-            mask.set_span(y, 0, 1);
-            mask.set_span(y, w - 1, w);
-        } else {
-            mask.set_span(y, 0, w);
-        }
-    }
-    mask.used = mask.count();
-    return mask;
-}
+ChartMask rectangle(std::uint32_t w, std::uint32_t h) { return test::rectangle_mask(w, h); }
 
 struct Level {
     std::vector<ChartMask> masks;
@@ -96,52 +66,10 @@ double efficiency(const Level& level, const Packing& packing) {
     return static_cast<double>(level.used) / area;
 }
 
-TEST(PageBits, FindsTheFirstPlaceByRows) {
-    test::Random random(5);
-    PageBits page(150);
-    std::vector<std::uint8_t> taken(150 * 400, 0);
-    int placed = 0;
-    for (int n = 0; n < 200; ++n) {
-        const ChartMask mask = random_mask(random, 80);
-        const auto free_at = [&](std::uint32_t x, std::uint32_t y) {
-            for (std::uint32_t v = 0; v < mask.height; ++v)
-                for (std::uint32_t u = 0; u < mask.width; ++u)
-                    if (mask.get(u, v) && taken[(y + v) * 150 + x + u]) return false;
-            return true;
-        };
-        const PageBits::Spot spot = page.find(mask, 0, 400);
-        bool expected = false;
-        for (std::uint32_t y = 0; y + mask.height <= 400 && !expected; ++y)
-            for (std::uint32_t x = 0; x + mask.width <= 150 && !expected; ++x)
-                if (free_at(x, y)) {
-                    expected = true;
-                    ASSERT_TRUE(spot.found);
-                    ASSERT_EQ(spot.x, x);
-                    ASSERT_EQ(spot.y, y);
-                }
-        ASSERT_EQ(spot.found, expected);
-        if (!expected) continue;
-        page.set(mask, spot.x, spot.y);
-        for (std::uint32_t v = 0; v < mask.height; ++v)
-            for (std::uint32_t u = 0; u < mask.width; ++u)
-                if (mask.get(u, v)) taken[(spot.y + v) * 150 + spot.x + u] = 1;
-        ++placed;
-    }
-    EXPECT_GT(placed, 100);
-}
-
-TEST(PageBits, ClearGivesBackWhatSetTook) {
-    PageBits page(130);
-    const ChartMask a = rectangle(70, 3), b = rectangle(130, 3);
-    page.set(a, 60, 0);
-    EXPECT_EQ(page.find(b, 0, 10).y, 3u);
-    page.clear(a, 60, 0);
-    EXPECT_EQ(page.find(b, 0, 10).y, 0u);
-}
-
 TEST(Pack, ALevelOnOnePage) {
     const Level level = random_level(200, 50, 200, 1);
-    const Packing packing = pack(level.masks, level.items, 4096, never);
+    Context context(1);
+    const Packing packing = pack(level.masks, level.items, 4096, context);
     ASSERT_TRUE(packing.complete);
     EXPECT_EQ(packing.pages.size(), 1u);
     EXPECT_EQ(conflicts(level, packing), 0u);
@@ -154,7 +82,8 @@ TEST(Pack, ALevelOnOnePage) {
 
 TEST(Pack, GroupsStayTogetherOnPages) {
     const Level level = random_level(60, 40, 60, 2);
-    const Packing packing = pack(level.masks, level.items, 128, never);
+    Context context(1);
+    const Packing packing = pack(level.masks, level.items, 128, context);
     ASSERT_TRUE(packing.complete);
     EXPECT_GE(packing.pages.size(), 3u);
     EXPECT_EQ(conflicts(level, packing), 0u);
@@ -177,7 +106,8 @@ TEST(Pack, AGroupLargerThanAPageSpreads) {
     for (int i = 0; i < 4; ++i) level.items.push_back({0, 7});
     for (std::uint32_t g = 8; g < 12; ++g) level.items.push_back({1, g});
     level.used = 4 * 3600 + 4 * 25;
-    const Packing packing = pack(level.masks, level.items, 64, never);
+    Context context(1);
+    const Packing packing = pack(level.masks, level.items, 64, context);
     ASSERT_TRUE(packing.complete);
     EXPECT_EQ(conflicts(level, packing), 0u);
     EXPECT_EQ(packing.pages.size(), 5u);
@@ -188,7 +118,8 @@ TEST(Pack, AChartAsLargeAsThePage) {
     level.masks = {rectangle(64, 64), rectangle(2, 2)};
     level.items = {{0, 0}, {1, 1}};
     level.used = 64 * 64 + 4;
-    const Packing packing = pack(level.masks, level.items, 64, never);
+    Context context(1);
+    const Packing packing = pack(level.masks, level.items, 64, context);
     ASSERT_TRUE(packing.complete);
     EXPECT_EQ(packing.pages.size(), 2u);
     EXPECT_EQ(conflicts(level, packing), 0u);
@@ -197,20 +128,26 @@ TEST(Pack, AChartAsLargeAsThePage) {
 TEST(Pack, OnePageFitsOrNot) {
     const Level level = random_level(20, 50, 60, 3);
     const auto edge = static_cast<std::uint32_t>(std::ceil(std::sqrt(static_cast<double>(level.used) / 0.8)));
-    const Packing roomy = pack_one_page(level.masks, level.items, edge, edge, never);
+    Context context(1);
+    const Packing roomy = pack_one_page(level.masks, level.items, edge, edge, context);
     ASSERT_TRUE(roomy.complete);
     EXPECT_EQ(roomy.pages[0].width, edge);
     EXPECT_EQ(roomy.pages[0].height, edge);
     EXPECT_EQ(conflicts(level, roomy), 0u);
-    EXPECT_FALSE(pack_one_page(level.masks, level.items, edge / 2, edge, never).complete);
+    EXPECT_FALSE(pack_one_page(level.masks, level.items, edge / 2, edge, context).complete);
 }
 
 TEST(Pack, StopsWhenAsked) {
     const Level level = random_level(20, 50, 60, 4);
-    EXPECT_FALSE(pack(level.masks, level.items, 4096, [] { return true; }).complete);
+    Context context(1);
+    context.request_cancel();
+    EXPECT_FALSE(pack(level.masks, level.items, 4096, context).complete);
 }
 
-TEST(Pack, NothingIsNoPage) { EXPECT_TRUE(pack({}, {}, 64, never).pages.empty()); }
+TEST(Pack, NothingIsNoPage) {
+    Context context(1);
+    EXPECT_TRUE(pack({}, {}, 64, context).pages.empty());
+}
 
 }  // namespace
 }  // namespace lumel

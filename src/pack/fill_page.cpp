@@ -33,12 +33,26 @@ Sorted sort_kinds(const Kinds& kinds) {
     return out;
 }
 
-std::vector<Strategy> strategies(std::size_t charts, Orientations orientations) {
-    (void)charts;
-    Strategy plain;
-    plain.turn_large = orientations == Orientations::eight;
-    plain.turn_tiny = orientations != Orientations::one;
-    return {plain};
+// Turned large charts cost up to eight times the search and only pay where no mass of tiny charts fills what they leave.
+// A few charts are packed so fast that the best of several ways can be taken.
+std::vector<Strategy> strategies(std::size_t charts, std::uint64_t texels, Orientations orientations) {
+    constexpr std::size_t kTurned = 50'000, kSeveral = 2'500;
+    constexpr std::uint64_t kSeveralTexels = 1'000'000;
+    Strategy first;
+    first.turn_large =
+        orientations == Orientations::eight || (orientations == Orientations::automatic && charts <= kTurned);
+    first.turn_tiny = orientations != Orientations::one;
+    if (first.turn_large) {
+        first.candidates = 16;
+        first.stranded_weight = 1;
+    }
+    if (charts > kSeveral || texels > kSeveralTexels) return {first};
+    first.stranded_weight = 1;
+    std::vector<Strategy> out(3, first);
+    out[1].candidates = 64;
+    out[2].candidates = 64;
+    out[2].stranded_weight = 0;
+    return out;
 }
 
 PageFill fill(const Kinds& kinds, const Sorted& sorted, const Strategy& strategy, std::size_t charts,
@@ -64,16 +78,20 @@ PageFill fill_page(std::span<const ChartMask> masks, std::span<const std::uint32
     LUMEL_CHECK(options.width > 0 && options.width <= FreeMap::kMaxWidth, options.width);
     const Kinds kinds = group_equal(masks, mask_of);
     const Sorted sorted = sort_kinds(kinds);
-    const std::vector<Strategy> all = strategies(mask_of.size(), options.orientations);
+    std::uint64_t texels = 0;
+    for (const std::uint32_t m : mask_of) texels += masks[m].used;
+    const std::vector<Strategy> all = strategies(mask_of.size(), texels, options.orientations);
     FillOptions quiet = options;
     quiet.progress = options.progress && all.size() == 1;
     std::vector<PageFill> fills(all.size());
+    fills[0].spots.resize(mask_of.size());  // where cancelled before it began
     parallel_for(context, all.size(), 1, [&](const ChunkRange& range) {
         fills[range.index] = fill(kinds, sorted, all[range.index], mask_of.size(), quiet, context);
     });
     std::size_t best = 0;
     for (std::size_t i = 1; i < fills.size(); ++i)
         if (is_better(fills[i], fills[best])) best = i;
+    if (options.progress) context.report("pack", 1.0);
     return std::move(fills[best]);
 }
 
