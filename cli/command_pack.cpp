@@ -39,9 +39,10 @@ Status check_sizes(const std::vector<ChartMask>& masks, const Options& options) 
         if (m.width <= width && !too_high) continue;
         const std::string size = std::to_string(m.width) + "x" + std::to_string(m.height);
         return Error{ErrorCode::usage, "chart " + std::to_string(i) + " has " + size + " texels, more than a page",
-                     options.file, m.width > FreeMap::kMaxWidth || m.height > FreeMap::kMaxWidth
-                                       ? "make it smaller: pages are 16384 wide at most"
-                                       : "give a larger --width or --max-page"};
+                     options.file,
+                     m.width > FreeMap::kMaxWidth || m.height > FreeMap::kMaxWidth
+                         ? "make it smaller: pages are 16384 wide at most"
+                         : "give a larger --width or --max-page"};
     }
     return success();
 }

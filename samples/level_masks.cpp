@@ -180,9 +180,7 @@ private:
 
 }  // namespace
 
-std::vector<ChartMask> level_masks(const LevelMasks& level) {
-    return Level(level).run();
-}
+std::vector<ChartMask> level_masks(const LevelMasks& level) { return Level(level).run(); }
 
 Status write_charts(const std::filesystem::path& folder, std::uint32_t charts, std::uint64_t seed) {
     LevelMasks level;

@@ -14,9 +14,9 @@ struct LevelMasks {
     std::uint32_t charts = 263'000;
     double texels = 10.1e6;
     std::uint64_t seed = 1;
-    bool instanced = true;    // meshes are placed many times: few different masks. false: each chart is drawn alone
-    double fall_off = 1.9;    // exponent of the extents; larger: fewer large charts
-    double largest = 620.0;   // extent, texels
+    bool instanced = true;   // meshes are placed many times: few different masks. false: each chart is drawn alone
+    double fall_off = 1.9;   // exponent of the extents; larger: fewer large charts
+    double largest = 620.0;  // extent, texels
 };
 
 // The same on every platform but for the rounding of pow and exp.

@@ -19,10 +19,9 @@ int main(int argc, char** argv) {
     };
     std::error_code ignored;
     std::filesystem::create_directories(argv[1], ignored);
-    const Status status =
-        which == "town"     ? samples::write_town(argv[1], number(3))
-        : which == "charts" ? samples::write_charts(argv[1], std::max(1u, number(3)), number(4))
-                            : samples::write_gallery(argv[1]);
+    const Status status = which == "town"     ? samples::write_town(argv[1], number(3))
+                          : which == "charts" ? samples::write_charts(argv[1], std::max(1u, number(3)), number(4))
+                                              : samples::write_gallery(argv[1]);
     if (status.ok()) return 0;
     std::fprintf(stderr, "lumel_samples: %s\n", status.error().text().c_str());
     return 1;

@@ -151,8 +151,8 @@ private:
         const Chart& chart = charts_.meshes[instances_[k].mesh].charts[instances_[k].chart];
         const PackSpot& spot = packing_.spots[k];
         const double inset = options_.masks.inset() - 0.5;
-        const TexelMap map = fit_to_centres(chart.min, chart.max, width, height, spot.x * cell() + inset,
-                                            spot.y * cell() + inset);
+        const TexelMap map =
+            fit_to_centres(chart.min, chart.max, width, height, spot.x * cell() + inset, spot.y * cell() + inset);
         return {spot.page,
                 {static_cast<float>(map.scale_x), static_cast<float>(map.scale_y)},
                 {static_cast<float>(map.offset_x), static_cast<float>(map.offset_y)}};

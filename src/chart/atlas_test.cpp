@@ -67,7 +67,8 @@ std::uint64_t shared_cells(const Level& level, const Layout& l, const MaskRule& 
                 for (double x = std::floor(x0) - 3.0; x < x1 + 3.0; ++x) {
                     if (!test::detail::meets_square(t, {x + 0.5, y + 0.5}, rule.reach() - kSlack)) continue;
                     EXPECT_TRUE(x >= 0 && y >= 0 && x * side < page.width && y * side < page.height);
-                    const auto bx = static_cast<std::uint32_t>(x) / per_block, by = static_cast<std::uint32_t>(y) / per_block;
+                    const auto bx = static_cast<std::uint32_t>(x) / per_block,
+                               by = static_cast<std::uint32_t>(y) / per_block;
                     std::uint32_t& o = owner[uv.page][std::size_t{by} * page.width + bx];
                     shared += o != kNone && o != chart;
                     o = chart;
@@ -88,8 +89,9 @@ TEST(Atlas, ChartsShareNoTexelUnderTheDeclaredFilter) {
     };
     const Layout plain = lay_out({});
     EXPECT_EQ(shared_cells(level, plain, {}), 0u);
-    for (const MaskRule& rule : {MaskRule{MaskRule::Filter::bicubic, 0, 1}, MaskRule{MaskRule::Filter::bilinear, 0, 4},
-                                 MaskRule{MaskRule::Filter::bilinear, 2, 1}, MaskRule{MaskRule::Filter::bicubic, 1, 4}}) {
+    for (const MaskRule& rule :
+         {MaskRule{MaskRule::Filter::bicubic, 0, 1}, MaskRule{MaskRule::Filter::bilinear, 0, 4},
+          MaskRule{MaskRule::Filter::bilinear, 2, 1}, MaskRule{MaskRule::Filter::bicubic, 1, 4}}) {
         EXPECT_GT(shared_cells(level, plain, rule), 0u) << "the plain layout would do: nothing is tested";
         const Layout l = lay_out(rule);
         EXPECT_EQ(shared_cells(level, l, rule), 0u);

@@ -119,10 +119,13 @@ TEST(MaskRule, HoldsEveryTexelThatALookupTouches) {
                     const std::vector<std::uint32_t> all{0};
                     const ChartMask mask = make_mask(all, std::span(&t, 1), low, high, width, height, rule);
                     ASSERT_EQ(mask.width, rule.cells(width));
-                    const TexelMap map = fit_to_centres(low, high, width, height, rule.inset() - 0.5, rule.inset() - 0.5);
+                    const TexelMap map =
+                        fit_to_centres(low, high, width, height, rule.inset() - 0.5, rule.inset() - 0.5);
                     for (int k = 0; k < 60; ++k) {
                         const float a = k < 3 ? 0.0f : random.unit(), b = k < 3 ? 0.0f : (1.0f - a) * random.unit();
-                        const auto mix = [&](float p, float q, float r) { return double{p + (q - p) * a + (r - p) * b}; };
+                        const auto mix = [&](float p, float q, float r) {
+                            return double{p + (q - p) * a + (r - p) * b};
+                        };
                         const auto c = static_cast<std::size_t>(k % 3);
                         const Vec2 p0 = t[c], p1 = t[(c + 1) % 3], p2 = t[(c + 2) % 3];
                         const double x = mix(p0.x, p1.x, p2.x) * map.scale_x + map.offset_x;

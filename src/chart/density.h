@@ -24,12 +24,12 @@ std::vector<ChartInstance> chart_instances(const Scene& scene, const ChartSet& c
 
 // Charts drawn at one density. Charts that look alike share a mask.
 struct SizedCharts {
-    std::vector<ChartMask> masks;  // in cells of the rule
+    std::vector<ChartMask> masks;                     // in cells of the rule
     std::vector<std::array<std::uint32_t, 2>> sizes;  // beside them: width and height of the box in texels
-    std::vector<std::uint32_t> mask_of;   // beside the chart instances
-    std::uint64_t used = 0, covered = 0;  // texels of all instances: on pages, and those that are baked
-    std::vector<std::uint32_t> clamped;   // chart instances that the largest size cut down
-    double reached = 0.0, least = 0.0;    // texels per metre, with the clamped ones: mean over the area, and lowest
+    std::vector<std::uint32_t> mask_of;               // beside the chart instances
+    std::uint64_t used = 0, covered = 0;              // texels of all instances: on pages, and those that are baked
+    std::vector<std::uint32_t> clamped;               // chart instances that the largest size cut down
+    double reached = 0.0, least = 0.0;  // texels per metre, with the clamped ones: mean over the area, and lowest
 };
 
 struct SizeLimit {

@@ -16,7 +16,8 @@ std::vector<std::byte> bytes_of(std::initializer_list<int> values) {
 }
 
 // By hand: one chart of 3 x 2 texels, "###" over "#..".
-const std::vector<std::byte> kSmall = bytes_of({'C', 'M', 'S', 'K', 1, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 3, 0, 2, 0, 7, 1});
+const std::vector<std::byte> kSmall =
+    bytes_of({'C', 'M', 'S', 'K', 1, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 3, 0, 2, 0, 7, 1});
 
 TEST(MaskFile, ByHand) {
     const auto masks = decode_masks(kSmall, "small.msk");

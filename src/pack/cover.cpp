@@ -51,7 +51,8 @@ public:
     std::vector<CoverSquare> run(std::uint32_t max_level) {
         std::vector<ChartMask> squares{left_};
         while (squares.size() <= max_level) {
-            ChartMask larger = larger_squares(squares.back(), kSquareSides[squares.size()] - kSquareSides[squares.size() - 1]);
+            ChartMask larger =
+                larger_squares(squares.back(), kSquareSides[squares.size()] - kSquareSides[squares.size() - 1]);
             if (larger.count() == 0) break;
             squares.push_back(std::move(larger));
         }

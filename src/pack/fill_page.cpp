@@ -33,8 +33,8 @@ Sorted sort_kinds(const Kinds& kinds) {
     return out;
 }
 
-// Turned large charts cost up to eight times the search and only pay where no mass of tiny charts fills what they leave.
-// A few charts are packed so fast that the best of several ways can be taken.
+// Turned large charts cost up to eight times the search and only pay where no mass of tiny charts fills what they
+// leave. A few charts are packed so fast that the best of several ways can be taken.
 std::vector<Strategy> strategies(std::size_t charts, std::uint64_t texels, Orientations orientations) {
     constexpr std::size_t kTurned = 50'000, kSeveral = 2'500;
     constexpr std::uint64_t kSeveralTexels = 1'000'000;
@@ -48,10 +48,10 @@ std::vector<Strategy> strategies(std::size_t charts, std::uint64_t texels, Orien
     }
     if (charts > kSeveral || texels > kSeveralTexels) return {first};
     first.stranded_weight = 1;
+    first.candidates = 64;
     std::vector<Strategy> out(3, first);
-    out[1].candidates = 64;
-    out[2].candidates = 64;
-    out[2].stranded_weight = 0;
+    out[1].stranded_weight = 0;
+    out[2].irregular_first = false;
     return out;
 }
 
@@ -69,7 +69,9 @@ PageFill fill(const Kinds& kinds, const Sorted& sorted, const Strategy& strategy
     return std::move(work.fill);
 }
 
-bool is_better(const PageFill& a, const PageFill& b) { return a.used != b.used ? a.used > b.used : a.height < b.height; }
+bool is_better(const PageFill& a, const PageFill& b) {
+    return a.used != b.used ? a.used > b.used : a.height < b.height;
+}
 
 }  // namespace
 

@@ -18,10 +18,10 @@ enum class Orientations : std::uint8_t {
 };
 
 struct FillOptions {
-    std::uint32_t width = 0;            // texels, 1 .. FreeMap::kMaxWidth
-    std::uint32_t height = 0;           // most rows; 0: as many as it takes
+    std::uint32_t width = 0;   // texels, 1 .. FreeMap::kMaxWidth
+    std::uint32_t height = 0;  // most rows; 0: as many as it takes
     Orientations orientations = Orientations::automatic;
-    bool progress = true;               // reports the stage "pack"
+    bool progress = true;  // reports the stage "pack"
 };
 
 // `mask_of`: the mask of each chart. Several strategies are tried where the charts are few; the best one's result is

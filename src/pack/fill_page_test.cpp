@@ -55,7 +55,8 @@ TEST(PackPages, NothingOverlapsWhateverTheOrientations) {
         const PagePacking packing = pack_with(masks, options);
         ASSERT_EQ(packing.pages.size(), 1u);
         check(masks, packing);
-        const bool turned = std::ranges::any_of(packing.charts, [](const PackedChart& c) { return c.orientation != 0; });
+        const bool turned =
+            std::ranges::any_of(packing.charts, [](const PackedChart& c) { return c.orientation != 0; });
         EXPECT_EQ(turned, orientations != Orientations::one);
     }
 }
@@ -77,6 +78,20 @@ TEST(PackPages, BeatsTheSweep) {
     EXPECT_GT(plain, published + 0.01);
     options.orientations = Orientations::automatic;
     EXPECT_GT(efficiency(pack_with(masks, options)), plain);
+}
+
+// A room: few charts, the largest of them rectangles. They must not be kept for the end, when they only fit below.
+TEST(PackPages, LargeRectanglesAreNotLeftForTheEnd) {
+    std::vector<ChartMask> masks = test::random_masks(150, 60, 7);
+    for (const std::uint32_t size : {150u, 130u, 90u, 70u}) masks.push_back(test::rectangle_mask(size, 3 * size / 4));
+    std::vector<std::uint32_t> all(masks.size());
+    std::iota(all.begin(), all.end(), 0u);
+    PackOptions options;
+    options.orientations = Orientations::one;
+    const PagePacking packing = pack_with(masks, options);
+    check(masks, packing);
+    Context context(1);
+    EXPECT_LE(packing.pages[0].height, sweep_page(masks, all, packing.width, context).height);
 }
 
 TEST(PackPages, PagesAreFilledInTurn) {

@@ -2,8 +2,8 @@
 // needs to test 256 positions of a chart at once.
 //
 // Level k has bit (x, y) set where the square of side kSquareSides[k] with its top left corner at (x, y) is free and on
-// the page. A chart is covered by a few such squares (cover.h): it fits at (x, y) where the bits of all of them are set, so
-// the rows of bits, shifted and joined by AND, answer for all x of a row. Two summaries, a bit per 64 positions
+// the page. A chart is covered by a few such squares (cover.h): it fits at (x, y) where the bits of all of them are
+// set, so the rows of bits, shifted and joined by AND, answer for all x of a row. Two summaries, a bit per 64 positions
 // of a row (more on wide pages) and a bit per row, skip what is full.
 #pragma once
 

@@ -212,20 +212,20 @@ LUMEL_INLINE std::int32_t stranded_body(const TinyWindow& free) {
 
 // ---- One set of functions per instruction set -----------------------------------------------------------------------
 
-#define LUMEL_KERNELS(name, attribute)                                                                               \
-    attribute bool next_fit_##name(const FreeMap& map, const CoverSquare* squares, std::size_t count,                \
-                                   std::uint32_t last_x, std::uint32_t last_y, FitSearch& search) {                  \
-        return next_fit_body(map, squares, count, last_x, last_y, search);                                           \
-    }                                                                                                                \
-    attribute FrameRating rate_##name(const FrameView& frame, const std::uint64_t* texels, std::size_t stride,       \
-                                      std::uint32_t shift, std::uint64_t* scratch) {                                 \
-        return rate_body(frame, texels, stride, shift, scratch);                                                     \
-    }                                                                                                                \
-    attribute std::size_t first_disjoint_##name(const std::uint64_t* a, const std::uint64_t* b, std::size_t begin,   \
-                                                std::size_t end, std::uint64_t not_in_a, std::uint64_t not_in_b) {   \
-        return first_disjoint_body(a, b, begin, end, not_in_a, not_in_b);                                            \
-    }                                                                                                                \
-    attribute std::int32_t stranded_##name(const TinyWindow& free) { return stranded_body(free); }                   \
+#define LUMEL_KERNELS(name, attribute)                                                                             \
+    attribute bool next_fit_##name(const FreeMap& map, const CoverSquare* squares, std::size_t count,              \
+                                   std::uint32_t last_x, std::uint32_t last_y, FitSearch& search) {                \
+        return next_fit_body(map, squares, count, last_x, last_y, search);                                         \
+    }                                                                                                              \
+    attribute FrameRating rate_##name(const FrameView& frame, const std::uint64_t* texels, std::size_t stride,     \
+                                      std::uint32_t shift, std::uint64_t* scratch) {                               \
+        return rate_body(frame, texels, stride, shift, scratch);                                                   \
+    }                                                                                                              \
+    attribute std::size_t first_disjoint_##name(const std::uint64_t* a, const std::uint64_t* b, std::size_t begin, \
+                                                std::size_t end, std::uint64_t not_in_a, std::uint64_t not_in_b) { \
+        return first_disjoint_body(a, b, begin, end, not_in_a, not_in_b);                                          \
+    }                                                                                                              \
+    attribute std::int32_t stranded_##name(const TinyWindow& free) { return stranded_body(free); }                 \
     constexpr Kernels k_##name = {next_fit_##name, rate_##name, first_disjoint_##name, stranded_##name};
 
 LUMEL_KERNELS(plain, )

@@ -45,8 +45,8 @@ struct Kernels {
     // texel two to its left, which is bit `shift`; `scratch`: 4 (columns + 2) rows + 2 words, of any content.
     FrameRating (*rate)(const FrameView& frame, const std::uint64_t* texels, std::size_t stride, std::uint32_t shift,
                         std::uint64_t* scratch);
-    // The first i in [begin, end) with no bit of a[i], b[i] among the given ones; `end` if there is none. The arrays may
-    // be read up to the next multiple of 16.
+    // The first i in [begin, end) with no bit of a[i], b[i] among the given ones; `end` if there is none. The arrays
+    // may be read up to the next multiple of 16.
     std::size_t (*first_disjoint)(const std::uint64_t* a, const std::uint64_t* b, std::size_t begin, std::size_t end,
                                   std::uint64_t not_in_a, std::uint64_t not_in_b);
     // Free texels, away from the window's edge, in no free square of 2 x 2, counted twice, and those in none of 3 x 3.

@@ -59,7 +59,7 @@ struct Pose {
     std::uint8_t orientation;
     ChartMask mask;
     std::vector<CoverSquare> squares;
-    std::optional<Frame> frame;  // where candidates are compared
+    std::optional<Frame> frame;   // where candidates are compared
     std::uint32_t first_row = 0;  // no position above it is left
 };
 
@@ -73,7 +73,8 @@ FitSearch run_ends(const FitSearch& search) {
     constexpr std::uint32_t n = FreeMap::kBlockWords;
     for (std::uint32_t w = 0; w < n; ++w) {
         const std::uint64_t fits = search.fits[w];
-        const std::uint64_t left = w > 0 ? search.fits[w - 1] >> 63 : 0, right = w + 1 < n ? search.fits[w + 1] << 63 : 0;
+        const std::uint64_t left = w > 0 ? search.fits[w - 1] >> 63 : 0,
+                            right = w + 1 < n ? search.fits[w + 1] << 63 : 0;
         out.fits[w] = fits & ~((fits << 1 | left) & (fits >> 1 | right));
     }
     return out;
@@ -208,16 +209,16 @@ std::vector<std::uint8_t> distinct_orientations(const ChartMask& mask, bool turn
     return out;
 }
 
-std::uint32_t level_of(const ChartMask& mask) {
-    return square_level(std::min(mask.width, mask.height));
-}
+std::uint32_t level_of(const ChartMask& mask) { return square_level(std::min(mask.width, mask.height)); }
 
 void place_large_charts(PageWork& work, std::span<const std::uint32_t> kinds) {
     std::vector<std::uint32_t> order(kinds.begin(), kinds.end());
     const auto key = [&](std::uint32_t k) {
         const ChartMask& m = *work.kinds.kinds[k].mask;
+        // Of a size that opens rows wherever it goes: such charts must not come after others.
+        const bool huge = m.width + m.height >= work.map.width() / 4;
         const bool early = work.strategy.irregular_first && !m.is_rectangle();
-        return std::tuple(early, m.width + m.height, m.height, m.used);
+        return std::tuple(huge, huge || early, m.width + m.height, m.height, m.used);
     };
     std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
         const auto ka = key(a), kb = key(b);

@@ -35,8 +35,7 @@ ChartMask oriented(const ChartMask& mask, std::uint8_t orientation) {
     out.covered = mask.covered;
     for (std::uint32_t y = 0; y < mask.height; ++y)
         for (std::uint32_t w = 0; w < mask.words_per_row; ++w)
-            for (std::uint64_t left = mask.bits[std::size_t{y} * mask.words_per_row + w]; left != 0;
-                 left &= left - 1) {
+            for (std::uint64_t left = mask.bits[std::size_t{y} * mask.words_per_row + w]; left != 0; left &= left - 1) {
                 const std::uint32_t x = w * 64 + static_cast<std::uint32_t>(std::countr_zero(left));
                 const std::uint32_t a = transposed ? y : x, b = transposed ? x : y;
                 out.set((orientation & kMirrorX) != 0 ? out.width - 1 - a : a,

@@ -25,10 +25,10 @@ struct PageFill {
 
 // One way to fill a page. They differ in what they are good at: see fill_page.cpp.
 struct Strategy {
-    bool irregular_first = true;   // large charts that are no rectangles go before those that are
-    bool turn_large = false;       // all eight orientations of large charts
-    bool turn_tiny = true;         // and of tiny ones
-    std::uint32_t candidates = 32;  // positions that are compared for a large chart; 0: the first one is taken
+    bool irregular_first = true;       // large charts, but for huge ones, that are no rectangles go first
+    bool turn_large = false;           // all eight orientations of large charts
+    bool turn_tiny = true;             // and of tiny ones
+    std::uint32_t candidates = 32;     // positions that are compared for a large chart; 0: the first one is taken
     std::int32_t stranded_weight = 2;  // of a stranded texel against one beside the chart that stays open
     std::uint32_t tiny_trials = 48;    // charts that are compared for a hole
 };

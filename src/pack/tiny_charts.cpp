@@ -110,7 +110,8 @@ private:
     // The first variant from `from` on that fits where this is taken, or their number.
     [[nodiscard]] std::size_t next_variant(std::size_t from, const Reach& taken) const {
         const auto find = [&](const Table& table, std::size_t begin, std::size_t end) {
-            return kernels_.first_disjoint(table.upper.data(), table.lower.data(), begin, end, taken.upper, taken.lower);
+            return kernels_.first_disjoint(table.upper.data(), table.lower.data(), begin, end, taken.upper,
+                                           taken.lower);
         };
         for (std::size_t c = from / kCluster; (c = find(common_, c, clusters_)) < clusters_; ++c) {
             const std::size_t end = std::min((c + 1) * kCluster, variants_.size());

@@ -15,9 +15,9 @@ struct PackedSpot {
 };
 
 struct PackConflicts {
-    std::uint64_t drawn = 0;     // texels
-    std::uint64_t overlaps = 0;  // drawn twice
-    std::uint64_t outside = 0;   // off the page
+    std::uint64_t drawn = 0;             // texels
+    std::uint64_t overlaps = 0;          // drawn twice
+    std::uint64_t outside = 0;           // off the page
     std::vector<std::uint32_t> heights;  // last row drawn + 1, by page
 };
 
