@@ -86,6 +86,10 @@ std::string to_json(const PagePacking& packing, const Figures& figures) {
 
 Result<std::string> run(const Options& options) {
     LUMEL_TRY(const std::vector<ChartMask> masks, read_masks(options.file));
+    constexpr std::uint32_t kLeastWidth = 64;
+    for (const std::uint32_t edge : {options.width, options.max_page})
+        if (edge != 0 && edge < kLeastWidth)
+            return Error{ErrorCode::usage, "--width and --max-page are 64 or more, or 0", {}, {}};
     if (options.max_page != 0 && options.width > options.max_page)
         return Error{ErrorCode::usage, "--width is larger than --max-page", {}, {}};
     LUMEL_TRY_STATUS(check_sizes(masks, options));

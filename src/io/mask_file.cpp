@@ -12,8 +12,9 @@ namespace {
 constexpr std::uint32_t kMagic = 0x4b534d43, kVersion = 1;  // "CMSK"
 constexpr std::size_t kHeaderBytes = 16, kChartHeaderBytes = 4;
 constexpr std::uint32_t kMaxEdge = 65535;
-// Masks take up to eight times their bytes in memory, the smallest ones about twenty times.
-constexpr std::uint64_t kMaxFileBytes = std::uint64_t{128} << 20;
+// Masks take up to eight times their bytes in memory, the smallest ones about twenty times; the page that they are
+// packed into, with all its free squares, up to thirty times.
+constexpr std::uint64_t kMaxFileBytes = std::uint64_t{32} << 20;
 constexpr std::uint32_t kMaxCharts = 4'000'000;
 
 std::uint32_t little_endian(std::span<const std::byte> bytes) {

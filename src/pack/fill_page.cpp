@@ -81,7 +81,10 @@ PageFill fill_page(std::span<const ChartMask> masks, std::span<const std::uint32
     const Kinds kinds = group_equal(masks, mask_of);
     const Sorted sorted = sort_kinds(kinds);
     std::uint64_t texels = 0;
-    for (const std::uint32_t m : mask_of) texels += masks[m].used;
+    for (const std::uint32_t m : mask_of) {
+        LUMEL_CHECK(masks[m].width <= options.width || options.height != 0, m, masks[m].width);
+        texels += masks[m].used;
+    }
     const std::vector<Strategy> all = strategies(mask_of.size(), texels, options.orientations);
     FillOptions quiet = options;
     quiet.progress = options.progress && all.size() == 1;

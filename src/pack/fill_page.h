@@ -24,8 +24,9 @@ struct FillOptions {
     bool progress = true;  // reports the stage "pack"
 };
 
-// `mask_of`: the mask of each chart. Several strategies are tried where the charts are few; the best one's result is
-// returned. The same for any number of threads. Where the context is cancelled the result is incomplete.
+// `mask_of`: the mask of each chart; none is wider than a page without a limit of height. Several strategies are tried
+// where the charts are few; the best one's result is returned. The same for any number of threads. Where the context is
+// cancelled the result is incomplete.
 PageFill fill_page(std::span<const ChartMask> masks, std::span<const std::uint32_t> mask_of, const FillOptions& options,
                    Context& context);
 
