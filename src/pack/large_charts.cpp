@@ -80,6 +80,13 @@ FitSearch run_ends(const FitSearch& search) {
     return out;
 }
 
+// Up to the last row that is not empty.
+std::uint32_t rows_used(const ChartMask& mask) {
+    std::size_t words = mask.bits.size();
+    while (words > 0 && mask.bits[words - 1] == 0) --words;
+    return static_cast<std::uint32_t>((words + mask.words_per_row - 1) / mask.words_per_row);
+}
+
 class LargeCharts {
 public:
     explicit LargeCharts(PageWork& work) : work_(work), kernels_(kernels()) {}
@@ -94,7 +101,7 @@ public:
             const Pose& pose = poses_[position->pose];
             work_.map.take(pose.mask, position->x, position->y, max_level);
             work_.placed(work_.kinds.charts[kind.first + i], pose.mask, pose.orientation, position->x, position->y,
-                         position->y + pose.mask.height);
+                         position->y + rows_used(pose.mask));
         }
     }
 
