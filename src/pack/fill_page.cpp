@@ -36,7 +36,7 @@ Sorted sort_kinds(const Kinds& kinds) {
 // Turned large charts cost up to eight times the search and only pay where no mass of tiny charts fills what they
 // leave. A few charts are packed so fast that the best of several ways can be taken.
 std::vector<Strategy> strategies(std::size_t charts, std::uint64_t texels, Orientations orientations) {
-    constexpr std::size_t kTurned = 50'000, kSeveral = 2'500;
+    constexpr std::size_t kTurned = 50'000, kSeveral = 6'000;
     constexpr std::uint64_t kSeveralTexels = 1'000'000;
     Strategy first;
     first.turn_large =
