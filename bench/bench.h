@@ -11,6 +11,7 @@ void add_texels(CLI::App& app);     // rasterising pages, sample points
 void add_replay(CLI::App& app);     // the bake against its own rays
 void add_transport(CLI::App& app);  // error against cost, method by method
 void add_pack(CLI::App& app);       // chart masks: texels used, time
+void add_encodings(CLI::App& app);  // error of encodings over normals
 
 // CPU time of the process, all threads together: the machine's other work does not count.
 class CpuStopwatch {

@@ -12,6 +12,7 @@ int main(int argc, char** argv) {
     lumel::bench::add_replay(app);
     lumel::bench::add_transport(app);
     lumel::bench::add_pack(app);
+    lumel::bench::add_encodings(app);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -25,6 +25,7 @@ Run add_bake(CLI::App& app);
 Run add_render(CLI::App& app);
 Run add_compare(CLI::App& app);
 Run add_pack(CLI::App& app);
+Run add_encode(CLI::App& app);
 
 // Values that several commands parse -------------------------------------------------------------------------------
 

@@ -51,6 +51,7 @@ int main(int argc, char** argv) {
     add("render", "Path-traced picture of a scene, or the same view lit by a bake", add_render);
     add("compare", "How far two images are apart", add_compare);
     add("pack", "Pack raw chart masks into an atlas", add_pack);
+    add("encode", "A bake's light in another encoding, or the error of all of them", add_encode);
 
     try {
         app.parse(argc, argv);

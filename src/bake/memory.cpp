@@ -25,16 +25,16 @@ constexpr std::uint64_t kSumsBytes =
     kLayerCount * sizeof(LayerMoments) + 3 * sizeof(Vec3) + 2 * sizeof(float) + 2 * sizeof(std::uint32_t);
 // x, y, valid points, owner, position, normal, size; start and share of the triangle lists; its place in the blocks.
 constexpr std::uint64_t kTexelBufferBytes = 4 + 8 + 4 + 2 * sizeof(Vec3) + 4 + 4 + 12 + 8;
-// Albedo, emission, coverage, chart; queue of the fill or guides of the denoiser or pooled variance or equations of the
-// fit (nine shares and six numbers each), of which one lives at a time.
-constexpr std::uint64_t kLightmapBytes = 2 * sizeof(Vec3) + 1 + 4 + 15 * sizeof(float);
+// Albedo, emission, normal, coverage, chart; queue of the fill or guides of the denoiser or pooled variance or
+// equations of the fit (nine shares and six numbers each), of which one lives at a time.
+constexpr std::uint64_t kLightmapBytes = 3 * sizeof(Vec3) + 1 + 4 + 15 * sizeof(float);
 // Of a thread: a block of texels with their points and sums, a wavefront of paths.
 constexpr std::uint64_t kWorkspaceBytes = 1u << 20;
 constexpr std::uint64_t kBytesPerPixel = 3 * sizeof(std::uint32_t);  // texel_at of both, readers
 
 // Rows of the master, the widest file, on one thread: as they were filled, as OpenEXR packs them, room to sort the
 // bytes in, room for what comes out (which may be larger: 1.3 times), and what came out.
-constexpr std::uint64_t kMasterPixelBytes = sizeof(float) * (kLayerCount * (3 * kShCoefficients + 3) + 5);
+constexpr std::uint64_t kMasterPixelBytes = sizeof(float) * (kLayerCount * (3 * kShCoefficients + 3) + 8);
 constexpr std::uint64_t kCopiesOfRows = 6;
 
 // Of a page, once it is written, there stay: previews, and the picture for scene.glb, which noise does not let compress

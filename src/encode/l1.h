@@ -9,6 +9,8 @@
 
 #include <array>
 
+#include "encode/encoding.h"
+#include "encode/hhd.h"
 #include "sh/coefficients.h"
 
 namespace lumel {
@@ -26,5 +28,22 @@ Vec3 evaluate_l1_linear(const L1Texel& texel, Vec3 n);
 
 // Never negative, same mean over all n, exact in I(n) - I(-n) along the main direction.
 Vec3 evaluate_l1_hazel(const L1Texel& texel, Vec3 n);
+float evaluate_hazel(float l0, Vec3 l1n, Vec3 n);
+
+// As a hemisphere light, a directional light and a ring on the horizon (hhd.h), for light from above the horizon only:
+// never negative, exact at n_v = +z; n is of the tangent frame, and so is l1n.
+Vec3 evaluate_l1_hhd(const L1Texel& texel, Vec3 n);
+
+// The texel as numbers of an encoding: L0, then the vectors of R, G and B.
+inline constexpr std::array<Field, 12> kL1Fields{
+    Field{"L0.R", FieldKind::light}, {"L0.G", FieldKind::light},    {"L0.B", FieldKind::light},
+    {"L1n.R.X", FieldKind::ratio},   {"L1n.R.Y", FieldKind::ratio}, {"L1n.R.Z", FieldKind::ratio},
+    {"L1n.G.X", FieldKind::ratio},   {"L1n.G.Y", FieldKind::ratio}, {"L1n.G.Z", FieldKind::ratio},
+    {"L1n.B.X", FieldKind::ratio},   {"L1n.B.Y", FieldKind::ratio}, {"L1n.B.Z", FieldKind::ratio}};
+Numbers to_numbers(const L1Texel& texel);
+L1Texel l1_texel(const Numbers& numbers);
+void rotate_l1(Numbers& numbers, const Rotation& rotation);
+// L0 and L0 L1n are linear in the light.
+Numbers blend_l1(const Numbers& a, float weight_a, const Numbers& b, float weight_b);
 
 }  // namespace lumel

@@ -163,4 +163,32 @@ Result<NamedChannels> decode_exr_channels(std::span<const std::byte> bytes, std:
     });
 }
 
+Status decode_exr_bands(std::span<const std::byte> bytes, std::span<const std::string> names, std::uint32_t rows,
+                        const ExrBand& band, const std::string& where) {
+    return with_exr(bytes, where, [&](Imf::InputFile& file) -> Status {
+        for (const std::string& name : names) LUMEL_TRY_STATUS(check_channel(file.header(), name, where));
+        LUMEL_TRY(const Size size, checked_size(file.header(), names.size(), bytes.size(), where));
+        NamedChannels part;
+        part.names.assign(names.begin(), names.end());
+        part.width = size.width;
+        part.planes.resize(names.size());
+        auto window = file.header().dataWindow();
+        const int top = window.min.y, bottom = window.max.y;
+        for (std::uint32_t first = 0; first < size.height; first += part.height) {
+            part.height = std::min(rows, size.height - first);
+            window.min.y = top + static_cast<int>(first);
+            window.max.y = std::min(bottom, window.min.y + static_cast<int>(part.height) - 1);
+            Imf::FrameBuffer buffer;
+            for (std::size_t c = 0; c < names.size(); ++c) {
+                part.planes[c].resize(std::size_t{part.width} * part.height);
+                buffer.insert(names[c], Imf::Slice::Make(Imf::FLOAT, part.planes[c].data(), window));
+            }
+            file.setFrameBuffer(buffer);
+            file.readPixels(window.min.y, window.max.y);
+            LUMEL_TRY_STATUS(band(part, first));
+        }
+        return success();
+    });
+}
+
 }  // namespace lumel

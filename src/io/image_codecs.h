@@ -44,5 +44,8 @@ Result<Image> decode_exr(std::span<const std::byte> bytes, const std::string& wh
 // Empty `names` means all.
 Result<NamedChannels> decode_exr_channels(std::span<const std::byte> bytes, std::span<const std::string> names,
                                           const std::string& where);
+// The same up to `rows` rows at a time: files too large to hold as floats.
+Status decode_exr_bands(std::span<const std::byte> bytes, std::span<const std::string> names, std::uint32_t rows,
+                        const ExrBand& band, const std::string& where);
 
 }  // namespace lumel

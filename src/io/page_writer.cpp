@@ -214,6 +214,9 @@ private:
         channels.push_back(
             channel("count", ExrType::full, [&texels](std::size_t t) { return static_cast<float>(texels.count[t]); }));
         for (std::size_t c = 0; c < 3; ++c)
+            channels.push_back(channel(std::string("normal.") + kXyz[c], ExrType::half,
+                                       [this, c](std::size_t t) { return map_.normal[t][c]; }));
+        for (std::size_t c = 0; c < 3; ++c)
             channels.push_back(
                 channel(std::string("variance.") + kRgb[c], ExrType::full, [&texels, c, unit](std::size_t t) {
                     // Of a light, hence twice.

@@ -40,11 +40,11 @@ private:
 
 inline constexpr double kPngWork = 2.0;  // of a channel of 8 bits, compressed on one thread
 // Of write_page_files: lightmap, irradiance, l1, bent normal; master; two grey pictures.
-inline constexpr double kPageWork = 3 + 3 + 12 + 3 + kLayerCount * (3 * kShCoefficients + 3) + 5 + 2 * kPngWork;
+inline constexpr double kPageWork = 3 + 3 + 12 + 3 + kLayerCount * (3 * kShCoefficients + 3) + 8 + 2 * kPngWork;
 
 // Of a pixel in all its files, previews and picture too, uncompressed and at their widest.
 inline constexpr std::uint64_t kPagePixelBytes =
-    sizeof(float) * (3 + 3 + 12 + kLayerCount * (3 * kShCoefficients + 3) + 5) + 3 * sizeof(float) / 2 + 2 + 4 * 3;
+    sizeof(float) * (3 + 3 + 12 + kLayerCount * (3 * kShCoefficients + 3) + 8) + 3 * sizeof(float) / 2 + 2 + 4 * 3;
 
 // Writes lightmap, irradiance, l1, master, ao, bent_normal and sky_visibility of the page; returns what the manifest
 // says of them. `unit`: of the light in each file; tests ask for others than the manifest states. Errors: io;

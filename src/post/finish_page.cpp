@@ -41,6 +41,7 @@ public:
         occlusion_ += from.ambient_occlusion[i];
         albedo_ += map.surface.albedo[i];
         emission_ += map.surface.emission[i];
+        normal_ += map.normal[i];
     }
     [[nodiscard]] bool empty() const { return n_ == 0; }
     void store_light(RadianceSums& to, std::size_t i) const {
@@ -54,15 +55,16 @@ public:
         to.sky_visibility[i] = sky_ * s;
         to.ambient_occlusion[i] = occlusion_ * s;
     }
-    void store_surface(TexelSurface& to, std::size_t i) const {
-        to.albedo[i] = albedo_ * (1.0f / static_cast<float>(n_));
-        to.emission[i] = emission_ * (1.0f / static_cast<float>(n_));
+    void store_surface(Lightmap& to, std::size_t i) const {
+        to.surface.albedo[i] = albedo_ * (1.0f / static_cast<float>(n_));
+        to.surface.emission[i] = emission_ * (1.0f / static_cast<float>(n_));
+        to.normal[i] = normalize_or(normal_, {0, 0, 1});
     }
 
 private:
     std::uint32_t n_ = 0;
     std::array<LayerMoments, kLayerCount> layers_{};
-    Vec3 variance_{}, bent_{}, albedo_{}, emission_{};
+    Vec3 variance_{}, bent_{}, albedo_{}, emission_{}, normal_{};
     float sky_ = 0.0f, occlusion_ = 0.0f;
 };
 
@@ -162,12 +164,13 @@ bool dilate_once(Lightmap& map, std::span<const std::uint32_t> readers, Context&
     map.texels.resize(first + ring.size());
     map.surface.albedo.resize(first + ring.size());
     map.surface.emission.resize(first + ring.size());
+    map.normal.resize(first + ring.size());
     map.coverage.resize(first + ring.size(), Coverage::none);
     for (std::size_t k = 0; k < ring.size(); ++k) {
         if (k % kLookEvery == 0 && context.cancelled()) return false;
         const Average average = average_around(map, ring[k], map.chart[first + k]);
         average.store_light(map.texels, first + k);
-        average.store_surface(map.surface, first + k);
+        average.store_surface(map, first + k);
     }
     for (std::size_t k = 0; k < ring.size(); ++k) {
         map.coverage[first + k] = Coverage::dilated;
@@ -181,6 +184,7 @@ void reserve(Lightmap& map, std::size_t texels) {
     map.texels.reserve(texels);
     map.surface.albedo.reserve(texels);
     map.surface.emission.reserve(texels);
+    map.normal.reserve(texels);
     map.coverage.reserve(texels);
     map.chart.reserve(texels);
 }
@@ -214,6 +218,7 @@ Result<Lightmap> finish_page(const TexelBuffer& buffer, RadianceSums sums, Texel
                              std::span<const std::uint32_t> readers, std::uint32_t rings, Context& context) {
     LUMEL_CHECK(sums.size() == buffer.size(), sums.size(), buffer.size());
     LUMEL_CHECK(buffer.chart.size() == buffer.size(), buffer.chart.size(), buffer.size());
+    LUMEL_CHECK(buffer.normal.size() == buffer.size(), buffer.normal.size(), buffer.size());
     LUMEL_CHECK(readers.empty() || readers.size() == buffer.texel_at.size(), readers.size(), buffer.texel_at.size());
     Lightmap map;
     map.page = buffer.page;
@@ -222,6 +227,7 @@ Result<Lightmap> finish_page(const TexelBuffer& buffer, RadianceSums sums, Texel
     map.texel_at = buffer.texel_at;
     map.texels = std::move(sums);
     map.surface = std::move(surface);
+    map.normal = buffer.normal;
     map.chart = buffer.chart;
     map.coverage.assign(buffer.size(), Coverage::none);
     for (std::size_t i = 0; i < buffer.size(); ++i)

@@ -25,6 +25,7 @@ struct Page {
             buffer.x.push_back(pixels[i][0]);
             buffer.y.push_back(pixels[i][1]);
             buffer.chart.push_back(0);
+            buffer.normal.push_back(i % 2 == 0 ? Vec3{0.6f, 0, 0.8f} : Vec3{-0.6f, 0, 0.8f});
             buffer.texel_at[std::size_t{pixels[i][1]} * width + pixels[i][0]] = static_cast<std::uint32_t>(i);
             sums.traced[i] = 10;
             sums.count[i] = value[i] < 0.0f ? 5 : 6;  // exactly half void is invalid already
@@ -90,6 +91,8 @@ TEST(FinishPage, DilationMakesAsManyRingsAsAsked) {
         EXPECT_EQ(map.texels.size(), side * side);
         for (std::size_t i = 0; i < map.texels.size(); ++i) EXPECT_FLOAT_EQ(map.texels.layers[i][1].irradiance.x, 7.0f);
         EXPECT_EQ(map.surface.albedo.size(), map.texels.size());
+        ASSERT_EQ(map.normal.size(), map.texels.size());
+        for (const Vec3& n : map.normal) EXPECT_NEAR(length(n), 1.0f, 1e-6f);
     }
 }
 

@@ -21,6 +21,7 @@ struct Lightmap {
     std::vector<std::uint32_t> texel_at;  // width*height: index into the arrays of `texels`, or kNone
     RadianceSums texels;                  // baked texels first (in TexelBuffer order), then dilated ones
     TexelSurface surface;                 // per texel
+    std::vector<Vec3> normal;             // per texel: the vertex normal, about which its irradiance is
     std::vector<Coverage> coverage;       // per texel
     std::vector<std::uint32_t> chart;     // per texel: whose light it is, as in TexelBuffer
 };

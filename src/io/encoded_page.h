@@ -1,0 +1,30 @@
+// A page solved into an encoding and written as named channels of an EXR.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "encode/encoding.h"
+#include "io/master.h"
+#include "lumel/context.h"
+
+namespace lumel {
+
+// Numbers of the covered texels of a page, as files hold them: world frame where the encoding rotates.
+struct EncodedPage {
+    std::uint32_t width = 0, height = 0;
+    std::vector<std::uint32_t> texel_at;
+    std::vector<Numbers> numbers;
+};
+
+// The light of a texel in its tangent frame.
+TexelLight light_of_texel(const MasterPage& master, std::size_t texel);
+
+// Error: cancelled.
+Result<EncodedPage> encode_page(const Encoding& encoding, const MasterPage& master, Context& context);
+
+// Channels are named as the encoding's fields. Half where halves hold the light, else float: returns "half" or "float".
+Result<std::string> write_encoded_page(const std::filesystem::path& file, const Encoding& encoding,
+                                       const EncodedPage& page, Context& context);
+
+}  // namespace lumel

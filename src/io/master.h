@@ -1,0 +1,31 @@
+// The master of a page, read back: the light of its texels, summed over layers, from which encodings are solved.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "encode/irradiance.h"
+#include "lumel/result.h"
+#include "sh/coefficients.h"
+
+namespace lumel {
+
+// Covered texels row by row: those that were baked, filled and dilated.
+struct MasterPage {
+    std::uint32_t width = 0, height = 0;
+    std::vector<std::uint32_t> texel_at;  // width*height: index of the texel, or kNone
+    std::vector<std::uint8_t> coverage;   // 3 baked, 2 filled, 1 dilated
+    std::vector<RadianceSh<Vec3, 9>> radiance;
+    std::vector<Vec3> irradiance, normal;  // I about n_v; n_v, unit length
+
+    [[nodiscard]] std::size_t size() const { return normal.size(); }
+};
+
+// master_<page>.exr. Errors: io; invalid_input where it is no master, or holds what is not finite, or no normals.
+Result<MasterPage> read_master(const std::filesystem::path& file, const LayerWeights& layers);
+Result<MasterPage> decode_master(std::span<const std::byte> exr, const LayerWeights& layers, const std::string& where);
+
+}  // namespace lumel

@@ -1,0 +1,35 @@
+#!/usr/bin/env bash
+# `lumel encode`: other encodings of a bake, the table of all, faults of usage.
+#   encode_test.sh LUMEL
+# shellcheck source=common.sh
+. "$(dirname "$0")/common.sh"
+
+expect 0 '' bake ok.gltf -o lit "${quick[@]}" --progress none
+
+expect 0 '' encode lit --encoding irradz-hhd
+[ -s lit/encoded_irradz-hhd_0.exr ] || complain 'no page'
+grep -q '"frame": "tangent"' lit/encoded_irradz-hhd.json || complain 'the frame is not stated'
+expect 0 '' encode lit --encoding l1-hhd -o elsewhere
+[ -s elsewhere/encoded_l1-hhd_0.exr ] || complain 'no page elsewhere'
+grep -q '"frame": "world"' elsewhere/encoded_l1-hhd.json || complain 'the frame is not stated'
+
+# Plain irradiance is the bake's own.
+expect 0 '' encode lit --encoding irradiance
+expect 0 '' compare lit/encoded_irradiance_0.exr lit/lightmap_0.exr --max-error 1e-6
+
+expect 0 '' encode lit --table --table-texels 50
+[ "$(wc -l <out.txt)" -gt 60 ] || complain "the table is short: $(cat out.txt)"
+cut -d, -f8 out.txt | grep -qiE 'nan|inf' && complain 'the table has numbers that are none'
+expect 0 'bytes a texel' encode lit --encoding auto --max-bytes 12 --table-texels 50
+expect 2 'no encoding fits' encode lit --encoding auto --max-bytes 2 --table-texels 50
+
+expect 2 "there is no 'hhd'" encode lit --encoding hhd
+expect 2 'one of --encoding and --table' encode lit
+expect 2 'one of --encoding and --table' encode lit --table --encoding l2
+expect 2 '--max-bytes needs' encode lit --encoding l2 --max-bytes 4
+expect 1 'nowhere' encode nowhere --encoding l2
+rm lit/master_0.exr
+expect 1 'has no master_0.exr' encode lit --encoding l2
+head -c 3000 lit/lightmap_0.exr >lit/master_0.exr
+expect 1 'master_0.exr' encode lit --encoding l2
+finish
