@@ -173,7 +173,9 @@ enum class Direction { linear, searched };
 Decoded lobes_of(const TexelLight& light, AmbientLobe ambient, const ZonalMatrix& gram, Direction direction) {
     const std::array<float, 9> target = luminance_target(light);
     const Vec3 start = linear_direction_of(light);
-    LobeFit fit = fit_ambient_weight(target, lifted(start), ambient, gram);
+    // As the expected figures have it: not as low as can be where it comes from below.
+    const Vec3 raised = normalize(Vec3{start.x, start.y, std::max(start.z, kLowestLobe)});
+    LobeFit fit = fit_ambient_weight(target, raised, ambient, gram);
     if (direction == Direction::searched)
         search_lobes(std::span(&target, 1), std::span(&start, 1), ambient, gram, std::span(&fit, 1));
     return Lobes{light.irradiance, fit.direction, fit.ambient_weight, ambient};
@@ -241,28 +243,36 @@ public:
         const auto value = [&](const Vec3& v) { return channel < 3 ? v[channel] : luminance(v); };
         const float iz = value(c.light.irradiance);
         for (const Vec3d& t : c.truth)
-            target_.push_back(
-                value(Vec3{static_cast<float>(t[0]), static_cast<float>(t[1]), static_cast<float>(t[2])}) / iz);
+            target_.push_back(static_cast<double>(
+                value(Vec3{static_cast<float>(t[0]), static_cast<float>(t[1]), static_cast<float>(t[2])}) / iz));
     }
     // Best weight and its error.
     [[nodiscard]] std::array<double, 2> fit(Vec3 d) const {
-        double uu = 0, ur = 0, rr = 0;
+        double uu = 0, ur = 0;
         for (std::size_t k = 0; k < target_.size(); ++k) {
-            const Vec3 n = grid().normal[k];
-            const float lobe = std::max(dot(n, d), 0.0f) / d.z;
-            const double u = static_cast<double>((ambient_ == AmbientLobe::uniform ? 1 : 0.5f * (1 + n.z)) - lobe);
-            const double r = static_cast<double>(target_[k] - lobe);
-            uu += grid().weight[k] * u * u;
-            ur += grid().weight[k] * u * r;
-            rr += grid().weight[k] * r * r;
+            const auto [ambient, lobe] = values(k, d);
+            uu += grid().weight[k] * (ambient - lobe) * (ambient - lobe);
+            ur += grid().weight[k] * (ambient - lobe) * (target_[k] - lobe);
         }
         const double w = uu > 1e-12 ? std::clamp(ur / uu, 0.0, 1.0) : 1.0;
-        return {w, rr - 2 * w * ur + w * w * uu};
+        double error = 0;  // with weight 1 the same number for every direction
+        for (std::size_t k = 0; k < target_.size(); ++k) {
+            const auto [ambient, lobe] = values(k, d);
+            const double e = w * ambient + (1 - w) * lobe - target_[k];
+            error += grid().weight[k] * e * e;
+        }
+        return {w, error};
     }
 
 private:
+    [[nodiscard]] std::array<double, 2> values(std::size_t k, Vec3 d) const {
+        const Vec3 n = grid().normal[k];
+        const float ambient = ambient_ == AmbientLobe::uniform ? 1.0f : 0.5f * (1 + n.z);
+        return {static_cast<double>(ambient), static_cast<double>(std::max(dot(n, d), 0.0f) / d.z)};
+    }
+
     AmbientLobe ambient_;
-    std::vector<float> target_;
+    std::vector<double> target_;
 };
 
 enum class Weights { luminance, rgb };
