@@ -132,7 +132,8 @@ TEST(PageFiles, TheMasterHoldsEveryMoment) {
     ASSERT_TRUE(write(folder, map, kAll).ok());
     const auto all = read_exr_channels(folder / "master_0.exr", {});
     ASSERT_TRUE(all.ok()) << all.error().text();
-    std::set<std::string> expected{"coverage", "count", "variance.R", "variance.G", "variance.B"};
+    std::set<std::string> expected{"coverage", "normal.X",   "normal.Y",   "normal.Z",
+                                   "count",    "variance.R", "variance.G", "variance.B"};
     for (const char* layer : kLayerNames)
         for (const char* channel : {"R", "G", "B"}) {
             for (int i = 0; i < 9; ++i) expected.insert(std::string(layer) + ".L" + std::to_string(i) + "." + channel);
