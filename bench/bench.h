@@ -12,6 +12,7 @@ void add_replay(CLI::App& app);     // the bake against its own rays
 void add_transport(CLI::App& app);  // error against cost, method by method
 void add_pack(CLI::App& app);       // chart masks: texels used, time
 void add_encodings(CLI::App& app);  // error of encodings over normals
+void add_bc(CLI::App& app);         // block compression
 
 // CPU time of the process, all threads together: the machine's other work does not count.
 class CpuStopwatch {

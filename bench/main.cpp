@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
     lumel::bench::add_transport(app);
     lumel::bench::add_pack(app);
     lumel::bench::add_encodings(app);
+    lumel::bench::add_bc(app);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
