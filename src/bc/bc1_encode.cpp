@@ -1,7 +1,7 @@
 // The encoder of BC1: weighted least squares for palettes of four and of three colours, both end points of a channel
 // rounded together; blocks of one colour by a search of their own. The transparent code is not used.
-// Based on: Khronos Data Format Specification 1.3, section "BC1"; van Waveren & Castaño 2008, "Real-Time Normal Map DXT
-// Compression" (least squares).
+// Based on: Khronos Data Format Specification 1.3, section "BC1"; Brown 2006, "DXT Compression Techniques" (end points
+// by least squares).
 #include <algorithm>
 #include <cmath>
 

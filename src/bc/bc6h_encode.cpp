@@ -1,7 +1,7 @@
-// The encoder of BC6H. It works on half-float codes, which are nearly the logarithm of the value, so that squared
-// errors are squared relative errors; "units" below are those of the format's 16-bit interpolation. Based on: Khronos
-// Data Format Specification 1.3, section "BC6H"; least squares as in van Waveren & Castaño 2008, "Real-Time Normal Map
-// DXT Compression", weighted, and with the rounding of both end points of a channel decided together.
+// The encoder of BC6H. It works on half-float codes, which are nearly the logarithm of the value: squared errors are
+// squared relative errors; "units" below are those of the format's 16-bit interpolation.
+// Based on: Khronos Data Format Specification 1.3, section "BC6H"; Brown 2006, "DXT Compression Techniques" (end points
+// by least squares), here with weights and with both end points of a channel rounded together.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -19,20 +19,23 @@ using namespace bc;
 using Pair = EndPair<3>;
 
 constexpr unsigned kMode11 = 10, kPartitions = 32;
-constexpr std::array<unsigned, 4> kOneRegionModes = {13, 12, 11, 10};                 // finest first
+constexpr std::int32_t kReach = 4;                                     // steps around an end point that are searched
+constexpr float kWidened = 2.0f;                                       // steps
+constexpr std::array<unsigned, 4> kOneRegionModes = {13, 12, 11, 10};  // finest first
 constexpr std::array<unsigned, 10> kTwoRegionModes = {2, 3, 4, 0, 5, 6, 7, 8, 1, 9};  // finest first
 
 // What each quality spends.
 struct Effort {
     unsigned one_region_rounds, partitions, two_region_rounds, polish;
+    bool widened;
     float good_enough;  // squared error per texel, in units, below which two regions are not tried
 };
 
 constexpr Effort effort_of(BcQuality quality) {
     switch (quality) {
-        case BcQuality::fast: return {1, 1, 1, 1, 3.0f * 16 * 16};
-        case BcQuality::normal: return {2, 2, 1, 2, 3.0f * 6 * 6};
-        default: return {4, 16, 3, 4, 0.0f};
+        case BcQuality::fast: return {1, 1, 1, 1, false, 3.0f * 16 * 16};
+        case BcQuality::normal: return {2, 2, 1, 2, true, 3.0f * 6 * 6};
+        default: return {4, 16, 3, 4, true, 0.0f};
     }
 }
 
@@ -165,6 +168,41 @@ LUMEL_BC_INLINE void unrounded(const Block& block, const Quantizer& grid, const 
     }
 }
 
+// The same by a search along the valley that the error is where all texels have nearly the same index: there, far more
+// than the four neighbours are as good, and some come much nearer to the wanted values than the grid is fine.
+LUMEL_BC_INLINE void round_channel_far(const Quadratic<3>& q, const Quantizer& grid, float mean, unsigned c, float a,
+                                       std::int32_t* out_a, std::int32_t* out_b) {
+    const std::int32_t first = grid.below(a + mean) - kReach + 1;
+    float best = 3e38f;
+    for (std::int32_t k = 0; k < 2 * kReach; ++k) {
+        const std::int32_t qa = std::clamp(first + k, grid.low, grid.high);
+        const float av = grid.units(qa) - mean;
+        const float b = q.gamma > 0.0f ? (q.right[c] - q.beta * av) / q.gamma : av;
+        const std::int32_t b0 = grid.below(b + mean);
+        for (std::int32_t qb = b0; qb <= std::min(b0 + 1, grid.high); ++qb) {
+            const float error = channel_error(q, c, av, grid.units(qb) - mean);
+            if (!(error < best)) continue;
+            best = error;
+            *out_a = qa;
+            *out_b = qb;
+        }
+    }
+}
+
+// End points moved apart to some steps of the grid, about their middle: their texels get indices near the middle.
+LUMEL_BC_INLINE void widen(float step, Pair& ends) {
+    float span = 0.0f;
+    for (unsigned c = 0; c < 3; ++c) span = std::max(span, std::abs(ends.b[c] - ends.a[c]));
+    const float wanted = kWidened * step;
+    if (span >= wanted) return;
+    for (unsigned c = 0; c < 3; ++c) {
+        const float middle = 0.5f * (ends.a[c] + ends.b[c]), half = 0.5f * (ends.b[c] - ends.a[c]);
+        const float far = span > 1e-3f ? half * (wanted / span) : 0.5f * wanted;
+        ends.a[c] = middle - far;
+        ends.b[c] = middle + far;
+    }
+}
+
 // One or two regions, with the end points found so far for each.
 struct Regions {
     unsigned count, partition;
@@ -176,7 +214,7 @@ struct Regions {
 
 // Rounds the end points of all regions in the finest mode that holds them, chooses the indices anew and keeps what is
 // better than what there was. The regions' end points become the least-squares ones of these indices.
-void round_and_keep(const Block& block, Regions& regions, bool only_mode_11, Encoded& best) {
+void round_and_keep(const Block& block, Regions& regions, bool only_mode_11, bool widened, Encoded& best) {
     Lanes index[2];
     Quadratic<3> q[2];
     float widest[3] = {};
@@ -198,10 +236,21 @@ void round_and_keep(const Block& block, Regions& regions, bool only_mode_11, Enc
         mode = &kBc6hModeTable[*modes];
         if (!may_fit(*mode, widest)) continue;
         const Quantizer grid(mode->end_bits, block.is_signed);
-        for (unsigned r = 0; r < regions.count; ++r)
-            for (unsigned c = 0; c < 3; ++c)
-                round_channel(q[r], grid, block.mean[c], c, regions.ends[r].a[c], regions.ends[r].b[c], &ends[2 * r][c],
-                              &ends[2 * r + 1][c]);
+        for (unsigned r = 0; r < regions.count; ++r) {
+            Pair pair = regions.ends[r];
+            if (widened) {
+                widen(grid.step, pair);
+                nearest_indices(block.x, pair, regions.steps, regions.limit, index[r]);
+                make_quadratic(regions.subset[r], index[r], regions.steps, q[r]);
+            }
+            for (unsigned c = 0; c < 3; ++c) {
+                if (widened)
+                    round_channel_far(q[r], grid, block.mean[c], c, pair.a[c], &ends[2 * r][c], &ends[2 * r + 1][c]);
+                else
+                    round_channel(q[r], grid, block.mean[c], c, pair.a[c], pair.b[c], &ends[2 * r][c],
+                                  &ends[2 * r + 1][c]);
+            }
+        }
         if (differences_fit(*mode, ends)) break;
     }
     const Quantizer grid(mode->end_bits, block.is_signed);
@@ -234,7 +283,9 @@ void try_one_region(const Block& block, bool only_mode_11, Encoded& best) {
     regions.limit.set(0, 7.0f);
     make_subset(block.x, block.weight, regions.subset[0]);
     fit_ends(regions.subset[0], regions.steps, block.effort.one_region_rounds, regions.ends[0]);
-    for (unsigned round = 0; round < block.effort.polish; ++round) round_and_keep(block, regions, only_mode_11, best);
+    for (unsigned round = 0; round < block.effort.polish; ++round)
+        round_and_keep(block, regions, only_mode_11, false, best);
+    if (block.effort.widened) round_and_keep(block, regions, only_mode_11, true, best);
 }
 
 void try_two_regions(const Block& block, unsigned partition, Encoded& best) {
@@ -249,7 +300,8 @@ void try_two_regions(const Block& block, unsigned partition, Encoded& best) {
         make_subset(block.x, weight, regions.subset[r]);
         fit_ends(regions.subset[r], regions.steps, block.effort.two_region_rounds, regions.ends[r]);
     }
-    for (unsigned round = 0; round < block.effort.polish; ++round) round_and_keep(block, regions, false, best);
+    for (unsigned round = 0; round < block.effort.polish; ++round) round_and_keep(block, regions, false, false, best);
+    if (block.effort.widened) round_and_keep(block, regions, false, true, best);
 }
 
 LUMEL_BC_INLINE std::uint32_t field_bits(const Bc6hField& field, std::int32_t value) {

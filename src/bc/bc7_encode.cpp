@@ -21,14 +21,15 @@ constexpr unsigned kPartitions = kTwoSubsetPartitions;
 struct Effort {
     unsigned rounds, polish, partitions;
     unsigned separate_ways;  // of modes 5 and 4
+    bool few_partitions;     // the first half, which are the plainest, and mode 1 alone
     float good_enough;       // squared error per texel, in codes, below which the search ends
 };
 
 constexpr Effort effort_of(BcQuality quality) {
     switch (quality) {
-        case BcQuality::fast: return {1, 1, 1, 0, 0.5f};
-        case BcQuality::normal: return {1, 2, 2, 1, 0.1f};
-        default: return {3, 4, 16, 3, 0.0f};
+        case BcQuality::fast: return {1, 1, 1, 0, true, 0.5f};
+        case BcQuality::normal: return {1, 2, 2, 1, false, 0.1f};
+        default: return {3, 4, 16, 3, false, 0.0f};
     }
 }
 
@@ -344,13 +345,21 @@ void search(const Block& block, Encoded& best) {
         for (unsigned apart = 0; apart < kChannels; ++apart)
             try_separate<kChannels - 1>(block, way == 0 ? 5 : 4, apart, way == 2 ? 1 : 0, best);
     alignas(64) float score[kPartitions];
-    score_two_subsets<kChannels, kPartitions>(block.x, block.weight, 7.0f, score);
+    if (effort.few_partitions) {
+        std::fill(score, score + kPartitions, 3e38f);
+        score_two_subsets<kChannels, kPartitions / 2>(block.x, block.weight, 7.0f, score);
+    } else {
+        score_two_subsets<kChannels, kPartitions>(block.x, block.weight, 7.0f, score);
+    }
     unsigned partitions[kPartitions];
     constexpr auto modes = two_subset_modes<kChannels>();
     best_partitions<kPartitions>(score, effort.partitions, partitions);
     for (unsigned k = 0; k < effort.partitions; ++k) {
         if (!(score[partitions[k]] < best.error)) break;
-        for (const unsigned mode : modes) try_two_subsets<kChannels>(block, mode, partitions[k], best);
+        for (const unsigned mode : modes) {
+            try_two_subsets<kChannels>(block, mode, partitions[k], best);
+            if (effort.few_partitions) break;
+        }
     }
 }
 

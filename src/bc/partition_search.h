@@ -84,6 +84,8 @@ LUMEL_BC_INLINE void score_two_subsets(const Lanes* x, const Lanes& weight, floa
 
     constexpr unsigned kStrip = 16;  // divisions at a time
     const float along = 1.0f / (steps * steps);
+    float total[kAll];
+    for (unsigned m = 0; m < kAll; ++m) total[m] = sum(value[m]);
     for (unsigned first = 0; first < kCount; first += kStrip) {
         Quad part[kAll][kStrip / 4];
         for (unsigned m = 0; m < kAll; ++m) {
@@ -97,7 +99,7 @@ LUMEL_BC_INLINE void score_two_subsets(const Lanes* x, const Lanes& weight, floa
             Quad one[kAll], other[kAll];
             for (unsigned m = 0; m < kAll; ++m) {
                 one[m] = part[m][l];
-                other[m] = sum(value[m]) - part[m][l];
+                other[m] = total[m] - part[m][l];
             }
             const Quad both = line_residual<kChannels>(one, along) + line_residual<kChannels>(other, along);
             std::memcpy(&score[first + 4 * l], &both, sizeof(both));
