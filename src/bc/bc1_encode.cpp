@@ -3,7 +3,6 @@
 // Based on: Khronos Data Format Specification 1.3, section "BC1"; Brown 2006, "DXT Compression Techniques" (end points
 // by least squares).
 #include <algorithm>
-#include <cmath>
 
 #include "bc/bc1.h"
 #include "bc/block_image.h"
@@ -48,8 +47,8 @@ LUMEL_BC_INLINE float code_of(std::int32_t q, unsigned c) {
 }
 
 LUMEL_BC_INLINE std::int32_t below(float code, unsigned c) {
-    const float q = std::floor(code * (static_cast<float>(kTop[c]) / 255.0f));
-    return std::clamp(static_cast<std::int32_t>(q), 0, kTop[c]);
+    const float top = static_cast<float>(kTop[c]), q = code * (top / 255.0f);
+    return static_cast<std::int32_t>(q > 0.0f ? (q < top ? q : top) : 0.0f);
 }
 
 LUMEL_BC_INLINE bool load(const BlockTexels<3>& texels, Block& block) {

@@ -6,7 +6,7 @@
 
 #include "bc/bc4.h"
 #include "bc/bc5.h"
-#include "bc/test_images.h"
+#include "support/block_pictures.h"
 
 namespace lumel {
 namespace {

@@ -11,10 +11,9 @@ std::array<float, 16> decode_bc4_block(const BcBlock8& block) {
     BlockReader reader(block);
     const auto a = static_cast<float>(reader.read(8)), b = static_cast<float>(reader.read(8));
     std::array<float, 8> palette = {a, b, 0, 0, 0, 0, 0, 255.0f};
-    const int steps = a > b ? 7 : 5;
-    for (int k = 1; k < steps; ++k)
-        palette[static_cast<std::size_t>(k + 1)] =
-            (static_cast<float>(steps - k) * a + static_cast<float>(k) * b) / static_cast<float>(steps);
+    const std::size_t steps = a > b ? 7 : 5;
+    for (std::size_t k = 1; k < steps; ++k)
+        palette[k + 1] = (static_cast<float>(steps - k) * a + static_cast<float>(k) * b) / static_cast<float>(steps);
     std::array<float, 16> out;
     for (float& value : out) value = palette[reader.read(3)] / 255.0f;
     return out;

@@ -117,7 +117,9 @@ struct Quantizer {
     // The largest number whose units do not exceed u, or a neighbour of it.
     [[nodiscard]] LUMEL_BC_INLINE std::int32_t below(float u) const {
         const float q = u * inverse_step - (u < 0.0f ? -offset : offset);
-        return std::clamp(static_cast<std::int32_t>(std::floor(q)), low, high);
+        const float from = static_cast<float>(low), to = static_cast<float>(high);
+        const float inside = q > from ? (q < to ? q : to) : from;  // in floats: q may be beyond integers
+        return static_cast<std::int32_t>(std::floor(inside));
     }
 };
 

@@ -8,7 +8,7 @@
 
 #include "bc/half.h"
 #include "bc/known_blocks.h"
-#include "bc/test_images.h"
+#include "support/block_pictures.h"
 
 namespace lumel {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "bc/known_blocks.h"
-#include "bc/test_images.h"
+#include "support/block_pictures.h"
 
 namespace lumel {
 namespace {
