@@ -5,8 +5,8 @@
 #include "bc/bc6h.h"
 #include "bc/bc6h_modes.h"
 #include "bc/block_image.h"
-#include "bc/half.h"
 #include "bc/partitions.h"
+#include "math/half.h"
 
 namespace lumel {
 namespace {

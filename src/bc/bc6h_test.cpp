@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "bc/half.h"
 #include "bc/known_blocks.h"
+#include "math/half.h"
 #include "support/block_pictures.h"
 
 namespace lumel {

@@ -8,8 +8,8 @@
 #include "bc/bc5.h"
 #include "bc/bc6h.h"
 #include "bc/bc7.h"
-#include "bc/half.h"
 #include "fuzz/seed_corpus.h"
+#include "math/half.h"
 
 extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
     lumel::fuzz::seed_corpus(*argc, *argv,
