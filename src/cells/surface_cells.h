@@ -75,7 +75,7 @@ public:
     [[nodiscard]] bool usable(std::uint32_t cell) const { return usable_[cell] != 0; }
 
     // Sets the irradiance from what all cells gathered: `gathers` of each, `links` as many for each. Bounces are
-    // iterations over the links, at no ray, until no cell changes by more than 1e-4. Cells most of whose paths met the
+    // iterations over the links, at no ray, until no cell changes by more than 1e-5. Cells most of whose paths met the
     // backs of surfaces become unusable.
     // Progress: stage "cells". Error: cancelled.
     Status solve(std::span<const CellGather> gathers, std::span<const CellLink> links, std::uint32_t bounces,
