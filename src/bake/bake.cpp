@@ -174,8 +174,6 @@ PageReport page_report(const Lightmap& map, const TexelBuffer& buffer) {
     return page;
 }
 
-constexpr double kBiasWork = 0.03;  // time to measure the cells' bias, in that of gathering the page
-
 // What the pages are baked from, one at a time.
 struct PageBaker {
     const Scene& scene;
@@ -200,12 +198,12 @@ struct PageBaker {
         }
         {
             const StageTimer timer(report, "trace");
-            ProgressParts progress(context, "trace", transport.cells ? 1.0 + kBiasWork : 1.0);
+            ProgressParts progress(context, "trace", transport.cells ? 1.0 + kCellBiasWork : 1.0);
             progress.begin(1.0);
             const std::size_t room = texels_with_rings(texels, options.dilate);
             LUMEL_TRY(sums, gather_page(texels, charts, atlas, transport, path, 0, texels.size(), context, room));
             if (transport.cells) {
-                progress.begin(kBiasWork);
+                progress.begin(kCellBiasWork);
                 LUMEL_TRY_STATUS(measure_cell_bias(texels, charts, atlas, transport, path, bias, context));
             }
             report.trace_wall_seconds += timer.seconds();

@@ -7,6 +7,7 @@
 
 #include "base/stopwatch.h"
 #include "base/try.h"
+#include "path/cell_bias.h"
 #include "path/gather_page.h"
 #include "path/light_cells.h"
 #include "path/texel_blocks.h"
@@ -79,7 +80,8 @@ Result<std::uint32_t> samples_within_time(const TimePlan& plan, const BakeOption
     LUMEL_TRY(const RadianceSums sums,
               gather_blocks(some, plan.texels, plan.charts, plan.atlas, through, trial_path, context));
     const double texels_of_trial = std::max<double>(1.0, static_cast<double>(some.texels.size()));
-    const double seconds_per_sample = gathering.seconds() / (texels_of_trial * kTrialSamples);
+    const double seconds_per_sample =
+        gathering.seconds() * (plan.has_cells ? 1.0 + kCellBiasWork : 1.0) / (texels_of_trial * kTrialSamples);
 
     const double pages = pixels_of(plan.atlas) / (static_cast<double>(plan.texels.width) * plan.texels.height);
     const double texels = pages * static_cast<double>(plan.texels.size());

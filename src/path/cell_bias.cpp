@@ -13,9 +13,8 @@ namespace lumel {
 namespace {
 
 constexpr std::uint32_t kSamples = 64;
-constexpr std::size_t kTexelsPerMeasured = 64, kFewestMeasured = 1024;
-// Time of a path to its end, in that of one to the next cell: for the progress alone.
-constexpr double kPathWork = 4.0;
+constexpr std::size_t kFewestTexels = 256;  // a tenth of a second
+constexpr double kPathWork = 4.0;           // time of a path to its end, in that of one to the next cell
 
 // Of the valid texels [begin, end), luminance.
 struct BlockLight {
@@ -60,10 +59,15 @@ double CellBias::standard_error() const {
 Status measure_cell_bias(const TexelBuffer& texels, const ChartSet& charts, const Atlas& atlas,
                          const Transport& transport, const PathOptions& options, CellBias& bias, Context& context) {
     LUMEL_CHECK(transport.cells);
-    const std::size_t wanted = std::max(texels.size() / kTexelsPerMeasured, kFewestMeasured);
-    const TexelBlocks blocks = spread_blocks(make_texel_blocks(texels, 0, texels.size()), wanted);
     PathOptions same = options;
     same.samples = std::min(kSamples, options.samples);
+    const double paths = kCellBiasWork * static_cast<double>(texels.size()) * options.samples;
+    const auto wanted = static_cast<std::size_t>(paths / ((1.0 + kPathWork) * same.samples));
+    const TexelBlocks blocks =
+        spread_blocks(make_texel_blocks(texels, 0, texels.size()), std::max(wanted, kFewestTexels));
+    // Small pages give more of their texels than large ones.
+    const double texels_per_measured =
+        static_cast<double>(texels.size()) / static_cast<double>(std::max<std::size_t>(1, blocks.texels.size()));
     same.stop = StopRule::fixed;
     same.guided = false;
     Transport to_the_end = transport;
@@ -76,7 +80,8 @@ Status measure_cell_bias(const TexelBuffer& texels, const ChartSet& charts, cons
     for (std::size_t b = 0; b < blocks.size(); ++b) {
         const BlockLight a = light_of(with_cells, blocks.first[b], blocks.first[b + 1], options);
         const BlockLight e = light_of(without, blocks.first[b], blocks.first[b + 1], options);
-        if (e.texels > 0.0 && a.texels > 0.0) bias.add(a.sum / a.texels, e.sum / e.texels, e.texels);
+        if (e.texels > 0.0 && a.texels > 0.0)
+            bias.add(a.sum / a.texels, e.sum / e.texels, e.texels * texels_per_measured);
     }
     return success();
 }

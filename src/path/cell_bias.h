@@ -14,7 +14,7 @@ namespace lumel {
 // Over blocks of texels: light with cells less light without, over the latter (luminance of the included layers).
 class CellBias {
 public:
-    // The mean light of so many texels of one block.
+    // The mean light of one block, which stands for so many texels.
     void add(double with_cells, double without, double texels);
 
     // NaN: not measured, or there is no light.
@@ -29,8 +29,11 @@ private:
     double difference_squares_ = 0.0, light_squares_ = 0.0, products_ = 0.0;
 };
 
-// Adds a page, of which it looks at about one texel in 64. `transport` has cells. Costs some 2 % of a bake of 256
-// samples. Error: cancelled.
+// What it costs, in the time of gathering the page.
+inline constexpr double kCellBiasWork = 0.03;
+
+// Adds a page, of which it looks at as many texels as that allows: one in 42 at 256 samples, but 256 at least.
+// `transport` has cells. Error: cancelled.
 Status measure_cell_bias(const TexelBuffer& texels, const ChartSet& charts, const Atlas& atlas,
                          const Transport& transport, const PathOptions& options, CellBias& bias, Context& context);
 
