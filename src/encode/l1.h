@@ -43,7 +43,8 @@ inline constexpr std::array<Field, 12> kL1Fields{
 Numbers to_numbers(const L1Texel& texel);
 L1Texel l1_texel(const Numbers& numbers);
 void rotate_l1(Numbers& numbers, const Rotation& rotation);
-// L0 and L0 L1n are linear in the light.
+// Of texels whose L0 and L0 L1n are linear in the light (all but those fitted to Hazel's evaluation), one after the
+// other; both in one frame.
 Numbers blend_l1(const Numbers& a, float weight_a, const Numbers& b, float weight_b);
 
 }  // namespace lumel

@@ -171,6 +171,20 @@ Numbers solve_hazel(const TexelLight& light) {
     return to_numbers(out);
 }
 
+// The mean of two powers of a cosine is none: the vector is mixed by light, and L0 follows from I_z, which adds up.
+Numbers blend_hazel(const Numbers& a, float weight_a, const Numbers& b, float weight_b) {
+    constexpr Vec3 kUp{0, 0, 1};
+    const L1Texel x = l1_texel(a), y = l1_texel(b);
+    L1Texel out = l1_texel(blend_l1(a, weight_a, b, weight_b));
+    for (std::size_t c = 0; c < 3; ++c) {
+        const float iz =
+            weight_a * evaluate_hazel(x.l0[c], x.l1n[c], kUp) + weight_b * evaluate_hazel(y.l0[c], y.l1n[c], kUp);
+        const float of_one = evaluate_hazel(1.0f, out.l1n[c], kUp);
+        if (of_one > 0.0f) out.l0[c] = iz / of_one;
+    }
+    return to_numbers(out);
+}
+
 Vec3 decode_linear(const Numbers& numbers, Vec3 n) { return evaluate_l1_linear(l1_texel(numbers), n); }
 Vec3 decode_hazel(const Numbers& numbers, Vec3 n) { return evaluate_l1_hazel(l1_texel(numbers), n); }
 
@@ -193,6 +207,6 @@ const Encoding kL1HazelFit{"l1-hazel-fit",
                            99,
                            detail::solve_each<solve_hazel>,
                            decode_hazel,
-                           blend_l1};
+                           blend_hazel};
 
 }  // namespace lumel

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "encode/hemisphere_fit.h"
 
@@ -19,8 +20,14 @@ const Normals& normals() {
     return kNormals;
 }
 
-double squared(Vec3 v) { return static_cast<double>(dot(v, v)); }
+double squared(Vec3 v) {  // of floats whose squares may be none
+    const auto x = static_cast<double>(v.x), y = static_cast<double>(v.y), z = static_cast<double>(v.z);
+    return x * x + y * y + z * z;
+}
 double sum(Vec3 v) { return static_cast<double>(v.x) + static_cast<double>(v.y) + static_cast<double>(v.z); }
+
+// What is no number is no small error either, and cannot be sorted.
+double or_infinity(double error) { return std::isfinite(error) ? error : std::numeric_limits<double>::infinity(); }
 
 // I about each normal of the grid.
 std::vector<Vec3> reference(const TexelLight& light) {
@@ -41,16 +48,16 @@ Sums compare(const Encoding& encoding, const Numbers& numbers, const std::vector
         out.truth += grid.weight[k] * sum(truth[k]);
     }
     constexpr double kArea = 3 * 6.283185307179586;  // three channels
-    out.error /= kArea;
+    out.error = or_infinity(out.error / kArea);
     out.truth /= kArea;
     return out;
 }
 
 bool is_between(Vec3 v, Vec3 a, Vec3 b) {
-    constexpr float kSlack = 0.01f;
     for (std::size_t c = 0; c < 3; ++c) {
         const float low = std::min(a[c], b[c]), high = std::max(a[c], b[c]);
-        if (v[c] < low - kSlack * high || v[c] > high + kSlack * high) return false;
+        const float slack = 0.01f * std::max(std::fabs(low), std::fabs(high));
+        if (!(v[c] >= low - slack && v[c] <= high + slack) || !std::isfinite(slack)) return false;
     }
     return true;
 }
@@ -81,14 +88,17 @@ ReconstructionError measure(const Encoding& encoding, Storage storage, const Mea
     }
     const auto count = static_cast<double>(n);
     const double mean = truth / count;
-    if (!(mean > 0.0)) return out;
+    if (mean == 0.0) return out;
+    // Without light to measure by, or with less than none, every error is too large.
+    const auto relative_to = [](double size, double light) { return or_infinity(light > 0.0 ? size / light : NAN); };
     std::vector<double> relative;
-    for (const Sums& s : sums) relative.push_back(std::sqrt(s.error) / (s.truth + 0.01 * mean));
+    for (const Sums& s : sums)
+        relative.push_back(relative_to(std::sqrt(s.error), std::max(s.truth, 0.0) + 0.01 * mean));
     std::ranges::sort(relative);
-    out.nrmse = std::sqrt(error / count) / mean;
+    out.nrmse = relative_to(std::sqrt(error / count), mean);
     out.p99 = relative[static_cast<std::size_t>(0.99 * (count - 1))];
     out.worst = relative.back();
-    if (irradiance > 0.0) out.at_normal = std::sqrt(at_normal / count) / (irradiance / count);
+    if (irradiance != 0.0) out.at_normal = relative_to(std::sqrt(at_normal / count), irradiance / count);
 
     std::size_t outside = 0;
     double between = 0.0;
@@ -103,7 +113,7 @@ ReconstructionError measure(const Encoding& encoding, Storage storage, const Mea
     }
     if (!texels.neighbours.empty()) {
         const auto pairs = static_cast<double>(texels.neighbours.size());
-        out.between = std::sqrt(between / pairs) / mean;
+        out.between = relative_to(std::sqrt(between / pairs), mean);
         out.outside = static_cast<double>(outside) / pairs;
     }
     return out;

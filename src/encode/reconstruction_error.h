@@ -16,7 +16,8 @@ struct MeasuredTexels {
     std::vector<std::array<std::uint32_t, 2>> neighbours;  // indices
 };
 
-// Relative errors; the mean is that of the irradiance over all texels, normals and channels.
+// Relative errors; the mean is that of the irradiance over all texels, normals and channels. Where it is zero they are
+// zero too; where an error is no number it is infinite.
 struct ReconstructionError {
     double nrmse = 0.0;             // over texels, normals of the hemisphere, channels
     double p99 = 0.0, worst = 0.0;  // of the texels' own: root mean square over its mean (plus a hundredth of all)

@@ -27,7 +27,7 @@ inline float round_to_half(float value) {
     const float size = std::fabs(value);
     if (!(size == size)) return 0.0f;
     if (size >= kLargestHalf) return std::copysign(kLargestHalf, value);
-    // Adding 1.5 * 2^13 units of the half's last place rounds to that place; below 2^-14 halves are evenly spaced.
+    // Adding 2^23 units of the half's last place rounds to that place; below 2^-14 halves are evenly spaced.
     constexpr std::uint32_t kSmallestExponent = 113u << 23;
     const std::uint32_t bits = std::bit_cast<std::uint32_t>(size) & 0x7f800000u;
     const auto exponent = bits > kSmallestExponent ? bits : kSmallestExponent;
