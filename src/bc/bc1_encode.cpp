@@ -37,7 +37,7 @@ struct Encoded {
     float error = 3e38f;
     std::int32_t a[3] = {}, b[3] = {};
     unsigned steps = 3;
-    Lanes index;  // along the line from a to b
+    Lanes index = {};  // along the line from a to b
 };
 
 constexpr std::int32_t kTop[3] = {31, 63, 31};
@@ -75,7 +75,7 @@ void round_and_keep(const Block& block, unsigned steps, Pair& ends, Encoded& bes
     limit.fill(n);
     Quadratic<3> q;
     nearest_indices(block.x, ends, n, limit, index);
-    make_quadratic(block.all, index, n, q);
+    make_quadratic<Palette::exact>(block.all, index, n, q);
     Encoded found;
     Pair rounded_ends = {};
     for (unsigned c = 0; c < 3; ++c) {
@@ -94,7 +94,7 @@ void round_and_keep(const Block& block, unsigned steps, Pair& ends, Encoded& bes
         }
     }
     nearest_indices(block.x, rounded_ends, n, limit, index);
-    make_quadratic(block.all, index, n, q);
+    make_quadratic<Palette::exact>(block.all, index, n, q);
     found.error = error_of(block.all, q, rounded_ends);
     found.steps = steps;
     found.index = index;
@@ -104,7 +104,7 @@ void round_and_keep(const Block& block, unsigned steps, Pair& ends, Encoded& bes
 
 void try_line(const Block& block, unsigned steps, const Effort& effort, Encoded& best) {
     Pair ends;
-    fit_ends(block.all, static_cast<float>(steps), effort.rounds, ends);
+    fit_ends<Palette::exact>(block.all, static_cast<float>(steps), effort.rounds, ends);
     for (unsigned round = 0; round < effort.polish; ++round) round_and_keep(block, steps, ends, best);
 }
 

@@ -83,6 +83,26 @@ TEST(Bc4, ErrorIsThatOfItsSteps) {
     }
 }
 
+TEST(Bc1AndBc4AndBc5, OnlyRatiosOfWeightsCount) {
+    Context context(1);
+    const Image image = coded_picture(32, 32, 3, 5);
+    for (const float scale : kScales) {
+        const std::vector<float> weights = mixed_weights(32 * 32, 1.0f), scaled = mixed_weights(32 * 32, scale);
+        EXPECT_EQ(encode_bc1(image, scaled, {}, context).value(), encode_bc1(image, weights, {}, context).value());
+        EXPECT_EQ(encode_bc4(image, scaled, {}, context).value(), encode_bc4(image, weights, {}, context).value());
+        EXPECT_EQ(encode_bc5(image, scaled, {}, context).value(), encode_bc5(image, weights, {}, context).value());
+    }
+}
+
+// Four colours that lie exactly on a palette come back exactly, whose thirds 64ths miss.
+TEST(Bc1, ThirdsAreExact) {
+    Context context(1);
+    Image image(4, 4, 3);
+    for (std::uint32_t i = 0; i < 48; ++i) image.data[i] = static_cast<float>(i / 3 % 4) / 3.0f;
+    const Image got = decode_bc1(encode_bc1(image, {}, {}, context).value(), 4, 4);
+    for (std::uint32_t i = 0; i < 16; ++i) EXPECT_FLOAT_EQ(got.data[4 * i], image.data[3 * i]) << i;
+}
+
 TEST(Bc4, TexelsOfWeightZeroAreNeverRead) {
     Context context(1);
     Image image = coded_picture(32, 32, 1, 3);

@@ -2,6 +2,7 @@
 // Based on: Khronos Data Format Specification 1.3, section "BC4 unsigned".
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "bc/bc4.h"
 #include "bc/block_image.h"
@@ -47,7 +48,7 @@ void keep_if_better(const std::array<float, 16>& codes, const std::array<float, 
 // Least squares over the texels between `low` and `high`, and end points up to `reach` away from it.
 void search(const std::array<float, 16>& codes, const std::array<float, 16>& weights, float steps, float low,
             float high, int reach, Encoded& best) {
-    Lanes x, weight;
+    Lanes x = {}, weight = {};
     for (unsigned i = 0; i < kTexels; ++i) {
         const bool inside = codes[i] >= low && codes[i] <= high;
         weight.set(i, inside ? weights[i] : 0.0f);
@@ -56,7 +57,7 @@ void search(const std::array<float, 16>& codes, const std::array<float, 16>& wei
     Subset<1> subset;
     make_subset(&x, weight, subset);
     EndPair<1> ends;
-    fit_ends(subset, steps, 3, ends);
+    fit_ends<Palette::exact>(subset, steps, 3, ends);
     const auto rounded_code = [](float v) { return static_cast<int>(std::clamp(std::floor(v + 0.5f), 0.0f, 255.0f)); };
     const int first = rounded_code(std::min(ends.a[0], ends.b[0])), last = rounded_code(std::max(ends.a[0], ends.b[0]));
     for (int i = -reach; i <= reach; ++i)
@@ -72,9 +73,11 @@ void search(const std::array<float, 16>& codes, const std::array<float, 16>& wei
 
 }  // namespace
 
-BcBlock8 encode_bc4_block(const std::array<float, 16>& codes, const std::array<float, 16>& weights, BcQuality quality) {
-    const bool none = std::none_of(weights.begin(), weights.end(), [](float w) { return w > 0.0f; });
-    if (none) return {};
+BcBlock8 encode_bc4_block(const std::array<float, 16>& codes, const std::array<float, 16>& given, BcQuality quality) {
+    const float total = std::accumulate(given.begin(), given.end(), 0.0f);
+    if (!(total > 0.0f)) return {};
+    std::array<float, 16> weights;
+    for (unsigned i = 0; i < kTexels; ++i) weights[i] = given[i] / total;
     const int reach = quality == BcQuality::fast ? 0 : quality == BcQuality::normal ? 1 : 3;
     Encoded best;
     search(codes, weights, 7.0f, 0.0f, 255.0f, reach, best);

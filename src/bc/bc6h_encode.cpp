@@ -3,9 +3,11 @@
 // Based on: Khronos Data Format Specification 1.3, section "BC6H"; Brown 2006, "DXT Compression Techniques" (end points
 // by least squares), here with weights and with both end points of a channel rounded together.
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 
+#include "base/check.h"
 #include "bc/bc6h.h"
 #include "bc/bc6h_modes.h"
 #include "bc/block_image.h"
@@ -47,11 +49,13 @@ struct Block {
     Effort effort;
 };
 
+using Ends = std::array<std::array<std::int32_t, 3>, 4>;  // two of each region, as stored
+
 struct Encoded {
     float error = 3e38f;
     unsigned mode = kMode11, partition = 0;
-    std::int32_t ends[4][3] = {};  // as stored, before differences are taken
-    Lanes index;
+    Ends ends = {};  // before differences are taken
+    Lanes index = {};
 };
 
 // Fractional half-float codes of values >= 0: between two codes they are linear in the value.
@@ -145,7 +149,7 @@ LUMEL_BC_INLINE bool fits(std::int32_t difference, unsigned bits) {
     return difference <= limit && difference >= -limit;
 }
 
-LUMEL_BC_INLINE bool differences_fit(const Bc6hMode& mode, const std::int32_t (*ends)[3]) {
+LUMEL_BC_INLINE bool differences_fit(const Bc6hMode& mode, const Ends& ends) {
     if (!mode.transformed) return true;
     for (unsigned e = 1; e < 2u * mode.regions; ++e)
         for (unsigned c = 0; c < 3; ++c)
@@ -162,8 +166,8 @@ LUMEL_BC_INLINE bool may_fit(const Bc6hMode& mode, const float* widest) {
     return true;
 }
 
-LUMEL_BC_INLINE void unrounded(const Block& block, const Quantizer& grid, const std::int32_t* a, const std::int32_t* b,
-                               Pair& out) {
+LUMEL_BC_INLINE void unrounded(const Block& block, const Quantizer& grid, const std::array<std::int32_t, 3>& a,
+                               const std::array<std::int32_t, 3>& b, Pair& out) {
     for (unsigned c = 0; c < 3; ++c) {
         out.a[c] = grid.units(a[c]) - block.mean[c];
         out.b[c] = grid.units(b[c]) - block.mean[c];
@@ -231,10 +235,12 @@ void round_and_keep(const Block& block, Regions& regions, bool only_mode_11, boo
         }
     }
     const unsigned* modes = regions.count == 2 ? kTwoRegionModes.data() : kOneRegionModes.data();
-    std::int32_t ends[4][3];
+    const unsigned* const past = modes + (regions.count == 2 ? kTwoRegionModes.size() : kOneRegionModes.size());
+    Ends ends = {};
     const Bc6hMode* mode = nullptr;
     if (only_mode_11) modes += kOneRegionModes.size() - 1;
     for (;; ++modes) {
+        LUMEL_CHECK(modes != past, regions.count);  // the last mode holds any end points
         mode = &kBc6hModeTable[*modes];
         if (!may_fit(*mode, widest)) continue;
         const Quantizer grid(mode->end_bits, block.is_signed);
@@ -269,7 +275,7 @@ void round_and_keep(const Block& block, Regions& regions, bool only_mode_11, boo
     best.error = error;
     best.mode = *modes;
     best.partition = regions.partition;
-    std::copy_n(&ends[0][0], 6 * regions.count, &best.ends[0][0]);
+    best.ends = ends;
     best.index = index[0];
     if (regions.count == 2)
         for (unsigned i = 0; i < kTexels; ++i)

@@ -68,7 +68,22 @@ TEST(Bc7, SurvivesAnyFloats) {
     test::Random random(7);
     Image image(32, 32, 4);
     for (float& value : image.data) value = std::bit_cast<float>(random.bits());
-    for (const float g : there_and_back(image, {}, {BcQuality::best, false}).data) EXPECT_TRUE(std::isfinite(g));
+    const Bc7Options options{BcQuality::best, false};
+    Context context(1);
+    for (const float g : there_and_back(image, {}, options).data) EXPECT_TRUE(std::isfinite(g));
+    EXPECT_EQ(encode_bc7(image, {}, options, context).value(),
+              encode_bc7(sanitised(image, 0.0f, 1.0f), {}, options, context).value());
+}
+
+TEST(Bc7, OnlyRatiosOfWeightsCount) {
+    Context context(1);
+    for (const std::uint32_t channels : {3u, 4u}) {
+        const Image image = coded_picture(32, 32, channels, 4);
+        const auto blocks = [&](float scale) {
+            return encode_bc7(image, mixed_weights(32 * 32, scale), {}, context).value();
+        };
+        for (const float scale : kScales) EXPECT_EQ(blocks(scale), blocks(1.0f)) << scale;
+    }
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ inline constexpr TwoSubsetMasks kTwoSubsetMasks = make_two_subset_masks();
 
 // The weights of the texels of one subset, 0 for the others.
 LUMEL_BC_INLINE Lanes weights_of(const Lanes& weight, unsigned partition, unsigned subset) {
-    Lanes out;
+    Lanes out = {};
     for (unsigned i = 0; i < kTexels; ++i)
         out.set(i, ((kTwoSubsets[partition] >> i) & 1u) == subset ? weight.get(i) : 0.0f);
     return out;

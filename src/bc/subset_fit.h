@@ -58,8 +58,13 @@ LUMEL_BC_INLINE float dot(const Lanes& x, const Lanes& y) {
 // Nearest whole number of 0 <= x < 2^22: the sum has no bits left for a fraction.
 LUMEL_BC_INLINE Quad rounded(Quad x) { return (x + 12582912.0f) - 12582912.0f; }
 
+// How a format's palette divides the line between its end points: BC6H and BC7 in whole 64ths, BC1 and BC4 exactly.
+enum class Palette : std::uint8_t { sixty_fourths, exact };
+
 // Position 0..1 between the end points of a whole index of `steps` + 1.
+template <Palette kPalette = Palette::sixty_fourths>
 LUMEL_BC_INLINE Quad palette_position(Quad index, float steps) {
+    if constexpr (kPalette == Palette::exact) return index * (1.0f / steps);
     return rounded(index * (64.0f / steps)) * (1.0f / 64.0f);
 }
 
@@ -68,7 +73,8 @@ struct EndPair {
     float a[kChannels], b[kChannels];
 };
 
-// Texels and weights (0 outside the subset) and what is the same for all end points.
+// Texels and weights (0 outside the subset; those of a block add up to 1, so that no square of them is beyond float)
+// and what is the same for all end points.
 template <unsigned kChannels>
 struct Subset {
     const Lanes* x = nullptr;  // one for each channel
@@ -176,12 +182,12 @@ struct Quadratic {
     float left[kChannels], right[kChannels];
 };
 
-template <unsigned kChannels>
+template <Palette kPalette = Palette::sixty_fourths, unsigned kChannels>
 LUMEL_BC_INLINE void make_quadratic(const Subset<kChannels>& s, const Lanes& index, float steps,
                                     Quadratic<kChannels>& out) {
     Lanes wt, wtt;
     for (unsigned i = 0; i < kQuads; ++i) {
-        const Quad t = palette_position(index.q[i], steps);
+        const Quad t = palette_position<kPalette>(index.q[i], steps);
         wt.q[i] = s.weight.q[i] * t;
         wtt.q[i] = wt.q[i] * t;
     }
@@ -224,7 +230,7 @@ LUMEL_BC_INLINE void solve(const Subset<kChannels>& s, const Quadratic<kChannels
 }
 
 // End points before they are rounded: the principal ends, then so many rounds of indices and least squares.
-template <unsigned kChannels>
+template <Palette kPalette = Palette::sixty_fourths, unsigned kChannels>
 LUMEL_BC_INLINE void fit_ends(const Subset<kChannels>& s, float steps, unsigned rounds, EndPair<kChannels>& ends) {
     Lanes limit, index;
     limit.fill(steps);
@@ -232,7 +238,7 @@ LUMEL_BC_INLINE void fit_ends(const Subset<kChannels>& s, float steps, unsigned 
     for (unsigned round = 0; round < rounds; ++round) {
         nearest_indices(s.x, ends, steps, limit, index);
         Quadratic<kChannels> q;
-        make_quadratic(s, index, steps, q);
+        make_quadratic<kPalette>(s, index, steps, q);
         solve(s, q, ends);
     }
 }

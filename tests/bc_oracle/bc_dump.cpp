@@ -1,5 +1,8 @@
 // Decodes a file of blocks with Lumel's reference decoders, for scripts/oracle/bc_decode.py check:
 // lumel_bc_dump FORMAT BLOCKS OUT writes float32 RGBA, 16 texels a block. Channels that a format lacks are 0.
+#include <algorithm>
+#include <array>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <fstream>

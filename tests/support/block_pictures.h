@@ -34,6 +34,22 @@ inline Image coded_picture(std::uint32_t width, std::uint32_t height, std::uint3
     return out;
 }
 
+// What encoders make of any floats: NaN is 0, values lie within [low, high].
+inline Image sanitised(Image image, float low, float high) {
+    for (float& value : image.data)
+        value = value > 0.0f ? std::fmin(value, high) : std::fmax(value < 0.0f ? value : 0.0f, low);
+    return image;
+}
+
+// Some weights of 0, some of 1 and some between.
+inline std::vector<float> mixed_weights(std::size_t count, float scale) {
+    std::vector<float> out(count);
+    for (std::size_t i = 0; i < count; ++i) out[i] = scale * (i % 7 == 0 ? 0.0f : i % 3 == 0 ? 1.0f : 0.3f);
+    return out;
+}
+// Powers of two, so that only what is beyond float can make a difference: 1e-25 and 1e25, nearly.
+inline constexpr float kScales[] = {0x1p-83f, 0x1p83f};
+
 // Root of the weighted mean square of difference(got, wanted), over the channels that both have.
 template <class Difference>
 double weighted_error(const Image& got, const Image& wanted, const std::vector<float>& weights,
