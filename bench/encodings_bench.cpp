@@ -503,16 +503,22 @@ MapErrors errors_on_map(const Environment& map, const std::vector<Row>& rows, bo
     return out;
 }
 
-void print_maps(const char* name, const std::vector<Environment>& maps, const std::vector<Row>& rows, bool above_only,
+// A sky map and its place in kMaps: not all of them need be there.
+struct LoadedMap {
+    std::size_t index;
+    Environment environment;
+};
+
+void print_maps(const char* name, const std::vector<LoadedMap>& maps, const std::vector<Row>& rows, bool above_only,
                 bool truth_above_only) {
     Table table(name);
     std::vector<double> all(rows.size());
-    for (std::size_t m = 0; m < maps.size(); ++m) {
-        const MapErrors errors = errors_on_map(maps[m], rows, above_only, truth_above_only);
+    for (const LoadedMap& map : maps) {
+        const MapErrors errors = errors_on_map(map.environment, rows, above_only, truth_above_only);
         for (std::size_t r = 0; r < rows.size(); ++r) {
             const double squared = above_only ? errors.relative[r] : errors.absolute[r] / (errors.mean * errors.mean);
             all[r] += squared / static_cast<double>(maps.size());
-            table.print(rows[r].name, maps[m].name, m, std::sqrt(squared));
+            table.print(rows[r].name, map.environment.name, map.index, std::sqrt(squared));
         }
     }
     if (maps.size() != kMaps.size()) return;
@@ -523,15 +529,15 @@ void print_maps(const char* name, const std::vector<Environment>& maps, const st
         synthetic.print(rows[r].name, "all maps", kAllMapsOfSynthetic, std::sqrt(all[r]));
 }
 
-std::vector<Environment> load_maps(const std::string& folder) {
-    std::vector<Environment> out;
-    for (const char* name : kMaps) {
-        const std::filesystem::path file = std::filesystem::path(folder) / (std::string(name) + ".hdr");
+std::vector<LoadedMap> load_maps(const std::string& folder) {
+    std::vector<LoadedMap> out;
+    for (std::size_t i = 0; i < kMaps.size(); ++i) {
+        const std::filesystem::path file = std::filesystem::path(folder) / (std::string(kMaps[i]) + ".hdr");
         if (!std::filesystem::exists(file)) {
             std::fprintf(stderr, "%s is not there: left out\n", file.c_str());
             continue;
         }
-        out.push_back(environment_of(need(read_image(file)), file.stem().string()));
+        out.push_back({i, environment_of(need(read_image(file)), file.stem().string())});
     }
     return out;
 }
@@ -623,7 +629,7 @@ void run_encodings(const Options& options) {
     if (wanted("synthetic")) print_made_up();
     if (wanted("random")) print_random(options.random);
     if (!options.maps.empty() && (wanted("maps") || wanted("probes") || wanted("sphere"))) {
-        const std::vector<Environment> maps = load_maps(options.maps);
+        const std::vector<LoadedMap> maps = load_maps(options.maps);
         if (wanted("maps")) print_maps("maps", maps, texel_rows(), true, true);
         if (wanted("probes")) print_maps("probes", maps, probe_rows(), false, true);
         if (wanted("sphere")) print_maps("sphere", maps, sphere_rows(), false, false);
