@@ -1,19 +1,23 @@
 // lumel encode DIR: the light of a bake in another encoding, solved from its master without tracing; --table: what each
 // encoding would make of it.
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <memory>
 #include <optional>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "base/cancelled.h"
 #include "base/parallel.h"
 #include "base/try.h"
 #include "command.h"
 #include "encode/reconstruction_error.h"
-#include "io/encoded_page.h"
-#include "io/image_io.h"
-#include "io/page_files.h"
+#include "interrupt.h"
+#include "io/encoded_output.h"
+#include "io/master.h"
 #include "path/radiance_sums.h"
 
 namespace lumel::cli {
@@ -22,40 +26,28 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Options {
-    std::string folder, output, encoding, format = "exr", include, progress;
+    std::string folder, output, encoding, format, progress;
     bool table = false;
-    std::uint32_t table_texels = 4000, threads = 0;
+    std::uint32_t threads = 0;
+    std::optional<std::uint32_t> table_texels;
     std::optional<double> max_bytes;
 };
 
 constexpr const char* kAutomatic = "auto";
+constexpr std::uint32_t kTableTexels = 4000;
 // EXR files store halves.
 constexpr Storage kStorageOfExr = Storage::half;
-
-fs::path master_file(const Options& options, std::uint32_t page) {
-    return fs::path(options.folder) / page_file(PageFile::master, page);
-}
-
-Result<std::uint32_t> count_pages(const Options& options) {
-    std::uint32_t pages = 0;
-    std::error_code ignored;
-    while (fs::exists(master_file(options, pages), ignored)) ++pages;
-    if (pages == 0)
-        return Error{ErrorCode::invalid_input, "has no master_0.exr", options.folder,
-                     "give the output folder of lumel bake"};
-    return pages;
-}
 
 // Texels that stand for all: evenly spread over the baked ones, and of each the neighbour to its right on one plane.
 class TexelPicker {
 public:
-    TexelPicker(std::uint32_t wanted, std::uint32_t pages) : per_page_(std::max(wanted / pages, 1u)) {}
+    TexelPicker(std::size_t wanted, std::size_t pages) : per_page_(std::max<std::size_t>(wanted / pages, 1)) {}
 
     void add(const MasterPage& master) {
         std::vector<std::uint32_t> baked;
         for (std::uint32_t i = 0; i < master.texel_at.size(); ++i)
             if (is_baked(master, master.texel_at[i])) baked.push_back(i);
-        const std::size_t count = std::min<std::size_t>(per_page_, baked.size());
+        const std::size_t count = std::min(per_page_, baked.size());
         for (std::size_t k = 0; k < count; ++k) add_with_neighbour(master, baked[k * baked.size() / count]);
     }
     [[nodiscard]] const MeasuredTexels& texels() const { return texels_; }
@@ -80,14 +72,14 @@ private:
         texels_.neighbours.push_back({first, add_texel(master, next)});
     }
 
-    std::uint32_t per_page_;
+    std::size_t per_page_;
     MeasuredTexels texels_;
 };
 
-Result<MeasuredTexels> pick_texels(const Options& options, std::uint32_t pages, const LayerWeights& layers) {
-    TexelPicker picker(options.table_texels, pages);
-    for (std::uint32_t p = 0; p < pages; ++p) {
-        LUMEL_TRY(const MasterPage master, read_master(master_file(options, p), layers));
+Result<MeasuredTexels> pick_texels(const Options& options, const MasterList& masters, const LayerWeights& layers) {
+    TexelPicker picker(options.table_texels.value_or(kTableTexels), masters.pages.size());
+    for (const MasterFile& file : masters.pages) {
+        LUMEL_TRY(const MasterPage master, read_master(file, layers));
         picker.add(master);
     }
     if (picker.texels().light.empty())
@@ -146,45 +138,23 @@ Result<const Encoding*> choose(const Options& options, const MeasuredTexels& tex
     return best->encoding;
 }
 
-const char* kind_name(FieldKind kind) {
-    switch (kind) {
-        case FieldKind::light: return "light";
-        case FieldKind::signed_light: return "signed light";
-        case FieldKind::ratio: return "ratio";
-        case FieldKind::unit: return "unit";
-    }
-    return "";
-}
-
-using Json = nlohmann::ordered_json;
-
-Status write_pages(const Options& options, const Encoding& encoding, std::uint32_t pages, const LayerWeights& layers,
-                   const LightRecord& record, Context& context) {
+Status write_pages(const Options& options, const Encoding& encoding, const MasterList& masters,
+                   const LayerWeights& layers, const LightRecord& record, RunContext& run) {
+    Context& context = run.get();
     const fs::path folder = options.output.empty() ? options.folder : options.output;
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (error) return Error{ErrorCode::io, "cannot be made: " + error.message(), folder.string(), "choose another -o"};
-    Json json{{"version", 1},
-              {"encoding", encoding.name},
-              {"about", encoding.about},
-              {"units", unit_name(LightUnit::e_over_pi)},
-              {"frame", encoding.rotate ? "world" : "tangent"},
-              {"input_hash", record.input_hash}};
-    for (std::size_t l = 0; l < kLayerCount; ++l)
-        if (layers[l] != 0.0f) json["layers"].push_back(kLayerNames[l]);
-    for (const Field& field : encoding.fields)
-        json["channels"].push_back({{"name", field.name}, {"kind", kind_name(field.kind)}});
-    const std::string stem = std::string("encoded_") + encoding.name;
-    for (std::uint32_t p = 0; p < pages; ++p) {
-        LUMEL_TRY(const MasterPage master, read_master(master_file(options, p), layers));
+    LUMEL_TRY(EncodedOutput output, EncodedOutput::create(folder, encoding, record));
+    run.interrupt().set_cleaner([partial = output.partial()] {
+        std::error_code ignored;
+        fs::remove_all(partial, ignored);
+    });
+    for (std::size_t p = 0; p < masters.pages.size(); ++p) {
+        LUMEL_TRY(const MasterPage master, read_master(masters.pages[p], layers));
         LUMEL_TRY(const EncodedPage page, encode_page(encoding, master, context));
-        const std::string name = stem + "_" + std::to_string(p) + ".exr";
-        LUMEL_TRY(const std::string type, write_encoded_page(folder / name, encoding, page, context));
-        json["pages"].push_back({{"file", name}, {"width", page.width}, {"height", page.height}, {"type", type}});
-        context.report("encode", static_cast<double>(p + 1) / pages);
+        LUMEL_TRY_STATUS(output.page(page, context));
+        context.report("encode", static_cast<double>(p + 1) / static_cast<double>(masters.pages.size()));
     }
-    const std::string text = json.dump(2) + "\n";
-    return write_file(folder / (stem + ".json"), std::as_bytes(std::span(text)));
+    if (!run.interrupt().begin_commit()) return cancelled_error();
+    return output.commit(masters);
 }
 
 Result<const Encoding*> named_encoding(const std::string& name) {
@@ -194,20 +164,29 @@ Result<const Encoding*> named_encoding(const std::string& name) {
     return Error{ErrorCode::usage, "--encoding: there is no '" + name + "'", {}, "one of auto, " + all};
 }
 
-Status run_in(const Options& options, Context& context) {
-    if (options.encoding.empty() == !options.table)
-        return Error{ErrorCode::usage, "one of --encoding and --table is needed", {}, {}};
-    if (options.max_bytes && options.encoding != kAutomatic)
-        return Error{ErrorCode::usage, "--max-bytes needs --encoding auto", {}, {}};
+Status check_usage(const Options& options) {
+    const auto usage = [](const char* what) { return Error{ErrorCode::usage, what, {}, {}}; };
+    if (options.encoding.empty() == !options.table) return usage("one of --encoding and --table is needed");
+    if (options.table && !options.output.empty()) return usage("--table prints: there is nothing to write with -o");
+    if (options.table && !options.format.empty()) return usage("--table prints: there is nothing to write as --format");
+    if (options.max_bytes && options.encoding != kAutomatic) return usage("--max-bytes needs --encoding auto");
+    if (options.table_texels && !options.table && options.encoding != kAutomatic)
+        return usage("--table-texels needs --table or --encoding auto");
+    return success();
+}
+
+Status run_in(const Options& options, RunContext& run) {
+    LUMEL_TRY_STATUS(check_usage(options));
+    Context& context = run.get();
     const Encoding* encoding = nullptr;
     if (!options.encoding.empty() && options.encoding != kAutomatic) {
         LUMEL_TRY(encoding, named_encoding(options.encoding));
     }
     LUMEL_TRY(const LightRecord record, read_light_record(options.folder));
     const LayerWeights layers = layer_weights(record.include);
-    LUMEL_TRY(const std::uint32_t pages, count_pages(options));
+    LUMEL_TRY(const MasterList masters, list_masters(options.folder));
     if (!encoding) {
-        LUMEL_TRY(const MeasuredTexels texels, pick_texels(options, pages, layers));
+        LUMEL_TRY(const MeasuredTexels texels, pick_texels(options, masters, layers));
         if (options.table) {
             constexpr std::array<Storage, 3> kAll{Storage::exact, Storage::half, Storage::texture};
             LUMEL_TRY(const std::vector<TableRow> rows, measure_all(texels, kAll, context));
@@ -216,12 +195,12 @@ Status run_in(const Options& options, Context& context) {
         }
         LUMEL_TRY(encoding, choose(options, texels, context));
     }
-    return write_pages(options, *encoding, pages, layers, record, context);
+    return write_pages(options, *encoding, masters, layers, record, run);
 }
 
 Status run(const Options& options) {
     RunContext context(options.threads, options.progress);
-    Status status = run_in(options, context.get());
+    Status status = run_in(options, context);
     context.finish();
     return status;
 }

@@ -62,7 +62,8 @@ std::vector<std::string> channel_names(const Imf::Header& header) {
 Status check_channel(const Imf::Header& header, const std::string& name, const std::string& where) {
     const Imf::Channel* channel = header.channels().findChannel(name);
     if (!channel)
-        return Error{ErrorCode::invalid_input, "has no channel '" + name + "'", where, "give a master of a bake"};
+        return Error{ErrorCode::invalid_input, "has no channel '" + name + "'", where,
+                     "give a master of lumel bake; bake again if an older one wrote it"};
     if (channel->xSampling != 1 || channel->ySampling != 1)
         return Error{ErrorCode::unsupported, "channel '" + name + "' is subsampled", where,
                      "save it at full resolution"};

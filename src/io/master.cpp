@@ -3,8 +3,11 @@
 #include <array>
 #include <cmath>
 
+#include "base/hash.h"
 #include "base/try.h"
 #include "io/image_codecs.h"
+#include "io/json_read.h"
+#include "io/light_record.h"
 #include "io/page_files.h"
 #include "lumel/scene.h"
 #include "path/radiance_sums.h"
@@ -15,7 +18,13 @@ namespace {
 constexpr std::array<const char*, 3> kRgb{"R", "G", "B"};
 constexpr std::size_t kShChannels = 3 * kShCoefficients, kLayerChannels = kShChannels + 3;
 constexpr std::uint32_t kRowsAtOnce = 64;
-constexpr std::uint64_t kMaxMasterFile = std::uint64_t{64} << 30;
+// No light is so bright; what encodings make of it, squares included, stays within float.
+constexpr float kLargest = 1e15f;
+constexpr std::uint64_t kMaxMasterFile = std::uint64_t{64} << 30, kMaxManifest = std::uint64_t{4} << 30;
+constexpr std::uint64_t kLargestPage = 16384;
+constexpr const char* kGiveABake = "give the output folder of lumel bake; bake again if an older one wrote it";
+
+bool is_possible(Vec3 v) { return max_component(max(v, -v)) <= kLargest && is_finite(v); }
 
 // Coverage and the normal, then of each layer that counts nine coefficients and I.
 std::vector<std::string> channel_names(const LayerWeights& layers) {
@@ -72,10 +81,10 @@ private:
         }
         for (Vec3& c : radiance.c) {
             c = from_file_unit(c, unit_of(PageFile::master));
-            if (!is_finite(c)) return damaged("a coefficient is not finite");
+            if (!is_possible(c)) return damaged("a coefficient is not finite, or beyond all light");
         }
         irradiance = from_file_unit(irradiance, unit_of(PageFile::master));
-        if (!is_finite(irradiance)) return damaged("an irradiance is not finite");
+        if (!is_possible(irradiance)) return damaged("an irradiance is not finite, or beyond all light");
         page_.texel_at.push_back(static_cast<std::uint32_t>(page_.size()));
         page_.coverage.push_back(static_cast<std::uint8_t>(coverage));
         page_.radiance.push_back(radiance);
@@ -105,6 +114,57 @@ Result<MasterPage> decode_master(std::span<const std::byte> exr, const LayerWeig
 Result<MasterPage> read_master(const std::filesystem::path& file, const LayerWeights& layers) {
     LUMEL_TRY(const std::vector<std::byte> bytes, read_file(file, kMaxMasterFile));
     return decode_master(bytes, layers, file.string());
+}
+
+Result<MasterPage> read_master(const MasterFile& master, const LayerWeights& layers) {
+    LUMEL_TRY(MasterPage page, read_master(master.file, layers));
+    if (page.width != master.width || page.height != master.height)
+        return invalid(master.file.string(),
+                       "has " + std::to_string(page.width) + " x " + std::to_string(page.height) +
+                           " texels, and the manifest says " + std::to_string(master.width) + " x " +
+                           std::to_string(master.height),
+                       "the folder holds files of different bakes: bake again");
+    return page;
+}
+
+Result<MasterList> list_masters(const std::filesystem::path& folder) {
+    const std::filesystem::path path = folder / kManifestFile;
+    LUMEL_TRY(const std::vector<std::byte> bytes, read_file(path, kMaxManifest));
+    LUMEL_TRY(MasterList out,
+              parse_master_list({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, folder, path.string()));
+    out.manifest_hash = Hasher().bytes(bytes).finish().hex();
+    return out;
+}
+
+Result<MasterList> parse_master_list(std::string_view manifest, const std::filesystem::path& folder,
+                                     const std::string& where) {
+    LUMEL_TRY(const Json json, parse_json(manifest, where));
+    MasterList out{folder / kManifestFile, {}, {}};
+    for (std::size_t p = 0; p < array_size(json, "pages"); ++p) {
+        const std::string here = where + ": page " + std::to_string(p);
+        LUMEL_TRY(const Json* page, element(json, "pages", p, where));
+        LUMEL_TRY(const std::uint64_t width, required_count(*page, "width", here));
+        LUMEL_TRY(const std::uint64_t height, required_count(*page, "height", here));
+        const Json* files = find(*page, "files");
+        const Json* master = files ? find(*files, "master") : nullptr;
+        if (!master) return invalid(here, "names no master", kGiveABake);
+        LUMEL_TRY(const std::string file, required_string(*master, "file", here));
+        if (std::filesystem::path(file).filename() != file)
+            return invalid(here, "names a master outside its folder: " + file, kGiveABake);
+        if (width == 0 || height == 0 || width > kLargestPage || height > kLargestPage)
+            return invalid(here, "is of a size that no bake writes", kGiveABake);
+        out.pages.push_back({folder / file, static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)});
+    }
+    if (out.pages.empty()) return invalid(where, "describes no pages", kGiveABake);
+    return out;
+}
+
+Status check_unchanged(const MasterList& list) {
+    LUMEL_TRY(const std::string hash, hash_file(list.manifest));
+    if (hash != list.manifest_hash)
+        return Error{ErrorCode::io, "was replaced by another bake meanwhile", list.manifest.parent_path().string(),
+                     "encode again"};
+    return success();
 }
 
 }  // namespace lumel

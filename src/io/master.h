@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "encode/irradiance.h"
@@ -23,6 +24,28 @@ struct MasterPage {
 
     [[nodiscard]] std::size_t size() const { return normal.size(); }
 };
+
+// A master as the manifest of its bake describes it.
+struct MasterFile {
+    std::filesystem::path file;
+    std::uint32_t width = 0, height = 0;
+};
+struct MasterList {
+    std::filesystem::path manifest;
+    std::string manifest_hash;
+    std::vector<MasterFile> pages;
+};
+
+// The masters of an output folder, by its manifest. Errors: io; invalid_input where it is no manifest of ours.
+Result<MasterList> list_masters(const std::filesystem::path& folder);
+// The same from the manifest's text, which `where` names in messages.
+Result<MasterList> parse_master_list(std::string_view manifest, const std::filesystem::path& folder,
+                                     const std::string& where);
+// An error where another bake has replaced this one.
+Status check_unchanged(const MasterList& list);
+
+// An error, too, where the file is of another size than the manifest says.
+Result<MasterPage> read_master(const MasterFile& master, const LayerWeights& layers);
 
 // master_<page>.exr. Errors: io; invalid_input where it is no master, or holds what is not finite, or no normals.
 Result<MasterPage> read_master(const std::filesystem::path& file, const LayerWeights& layers);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 #include <functional>
 #include <limits>
 
@@ -87,6 +88,8 @@ TEST(Master, DamagedNumbersAreErrors) {
     constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
     expect_error([](const std::string& n, float& v) { v = n == "sky.L4.B" ? kNan : v; }, "coefficient");
     expect_error([](const std::string& n, float& v) { v = n == "direct.I.G" ? 2e38f * 10 : v; }, "irradiance");
+    expect_error([](const std::string& n, float& v) { v = n == "direct.L8.R" ? -1e16f : v; }, "coefficient");
+    expect_error([](const std::string& n, float& v) { v = n == "sky.I.B" ? 1e38f : v; }, "irradiance");
     expect_error([](const std::string& n, float& v) { v = n == "normal.X" ? 0.0f : v; }, "unit length");
     expect_error([](const std::string& n, float& v) { v = n == "coverage" ? 0.5f : v; }, "coverage");
 }
@@ -127,6 +130,40 @@ TEST(EncodedPage, DecodesToTheLightOfTheMaster) {
             EXPECT_NEAR(e->decode(numbers, n).x, expected, 4e-3f * expected) << e->name << " " << x << " " << y;
         }
     }
+}
+
+std::string manifest_of(const std::string& file, int width, int height) {
+    return R"({"pages": [{"width": )" + std::to_string(width) + R"(, "height": )" + std::to_string(height) +
+           R"(, "files": {"master": {"file": ")" + file + R"("}}}]})";
+}
+
+TEST(MasterList, IsThatOfTheManifest) {
+    const test::TemporaryFolder folder;
+    write_master(folder);
+    std::ofstream(folder / "manifest.json") << manifest_of("master_0.exr", kWidth, kHeight);
+    Result<MasterList> list = list_masters(folder / "");
+    ASSERT_TRUE(list.ok()) << list.error().text();
+    ASSERT_EQ(list->pages.size(), 1u);
+    EXPECT_TRUE(read_master(list->pages[0], {1, 1, 0}).ok());
+    EXPECT_TRUE(check_unchanged(*list).ok());
+    ++list->pages[0].width;
+    const Result<MasterPage> page = read_master(list->pages[0], {1, 1, 0});
+    ASSERT_FALSE(page.ok());
+    EXPECT_NE(page.error().text().find("7 x 150 texels"), std::string::npos) << page.error().text();
+    std::ofstream(folder / "manifest.json") << manifest_of("master_0.exr", kWidth, kHeight + 1);
+    EXPECT_FALSE(check_unchanged(*list).ok());
+}
+
+TEST(MasterList, RefusesWhatNoBakeWrites) {
+    const auto fails = [](const std::string& manifest) { return !parse_master_list(manifest, "out", "test").ok(); };
+    EXPECT_FALSE(fails(manifest_of("master_0.exr", 1, 1)));
+    EXPECT_TRUE(fails(manifest_of("../master_0.exr", 1, 1)));
+    EXPECT_TRUE(fails(manifest_of("/master_0.exr", 1, 1)));
+    EXPECT_TRUE(fails(manifest_of("master_0.exr", 0, 1)));
+    EXPECT_TRUE(fails(manifest_of("master_0.exr", 1, 16385)));
+    EXPECT_TRUE(fails(R"({"pages": []})"));
+    EXPECT_TRUE(fails(R"({"pages": [{"width": 1, "height": 1, "files": {}}]})"));
+    EXPECT_TRUE(fails(R"({"pages": [{"width": 1, "height": 1, "files": {"master": 3}}]})"));
 }
 
 }  // namespace

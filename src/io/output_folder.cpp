@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "base/try.h"
+#include "encode/encoding.h"
 #include "io/atomic_file.h"
 #include "io/page_files.h"
 
@@ -178,17 +179,6 @@ void remove_stale_partials(const fs::path& target) {
     }
 }
 
-// A bake holds the target for as long as it takes to move some files.
-Result<FolderLock> lock_target(const fs::path& target) {
-    FolderLock lock;
-    for (int tenths = 0; tenths < 100; ++tenths) {
-        if (lock.acquire(target) != FolderLock::State::taken) return lock;  // without locks: as well as one can
-        std::this_thread::sleep_for(std::chrono::milliseconds(100));
-    }
-    return Error{ErrorCode::io, "another process holds a lock on this folder", target.string(),
-                 "wait for the bake that moves its files there, or choose another folder with -o"};
-}
-
 // The process id, or the first number after it whose names are free: in containers many processes have the same id.
 std::string free_number(const fs::path& target) {
     const auto is_taken = [&](const std::string& number) {
@@ -202,9 +192,30 @@ std::string free_number(const fs::path& target) {
     return std::to_string(number);
 }
 
+bool is_encoded_file(const std::string& name) {
+    return std::ranges::any_of(list_encodings(), [&](const Encoding* encoding) {
+        return name == encoded_stem(encoding->name) + ".json" || is_encoded_page_file(encoding->name, name);
+    });
+}
+
 }  // namespace
 
+Result<FolderLock> lock_folder(const fs::path& folder) {
+    FolderLock lock;
+    for (int tenths = 0; tenths < 100; ++tenths) {
+        if (lock.acquire(folder) != FolderLock::State::taken) return lock;
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+    return Error{ErrorCode::io, "another process holds a lock on this folder", folder.string(),
+                 "wait for the one that moves its files there, or choose another folder with -o"};
+}
+
+bool is_encoded_page_file(const std::string& encoding, const std::string& name) {
+    return is_numbered(name, encoded_stem(encoding) + "_", ".exr");
+}
+
 bool is_output_file(const std::string& name) {
+    if (is_encoded_file(name)) return true;
     if (name == kSceneFile || name == kManifestFile || name == kReportFile) return true;
     if (is_numbered(name, kViewStem, ".png")) return true;
     return std::any_of(std::begin(kPageFiles), std::end(kPageFiles), [&](PageFile kind) {
@@ -288,7 +299,7 @@ Result<OutputFolder> OutputFolder::create(const fs::path& target) {
     if (fs::exists(status) && ::access(real.c_str(), W_OK | X_OK) != 0)
         return system_error("writing to the folder", target, errno);
     if (fs::exists(status)) {
-        LUMEL_TRY(const FolderLock lock, lock_target(real));
+        LUMEL_TRY(const FolderLock lock, lock_folder(real));
         LUMEL_TRY_STATUS(recover(real));
         LUMEL_TRY_STATUS(check_not_foreign(real, target));
     }
@@ -330,7 +341,7 @@ Error OutputFolder::as_in_target(Error error) const {
 }
 
 Status OutputFolder::replace_files() {
-    LUMEL_TRY(const FolderLock lock, lock_target(target_));
+    LUMEL_TRY(const FolderLock lock, lock_folder(target_));
     LUMEL_TRY_STATUS(recover(target_));  // of a process that was killed since
     std::error_code error;
     const fs::path leaving = with_suffix(target_, std::string(kLeaving) + number_);

@@ -62,7 +62,13 @@ private:
     FolderLock lock_;
 };
 
-// Is this the name of a file that a bake writes?
+// Holds a folder for as long as it takes to move some files; waits a little for others who do. Where the file system
+// knows no locks: as well as one can. Error: io.
+Result<FolderLock> lock_folder(const std::filesystem::path& folder);
+
+// Is this the name of a file that a bake writes, or of one that is made of its files (encode)? Those of an older bake
+// go when a new one moves in.
 bool is_output_file(const std::string& name);
+bool is_encoded_page_file(const std::string& encoding, const std::string& name);
 
 }  // namespace lumel

@@ -110,6 +110,22 @@ TEST(OutputFolder, ReplacesOurFilesAndKeepsForeignOnes) {
     EXPECT_EQ(folder.entries(), 1u);
 }
 
+// What was made of an older bake's files is not of the new one, and nothing in it would say so.
+TEST(OutputFolder, EncodedFilesGoWithTheirBake) {
+    const TemporaryFolder folder;
+    fs::create_directory(folder / "out");
+    for (const char* name : {"manifest.json", "encoded_l2.json", "encoded_l2_0.exr", "encoded_irradz-hhd_12.exr"})
+        put(folder / "out" / name, kOldManifest);
+    for (const char* name : {"encoded_l2_x.exr", "encoded_mine_0.exr", "encoded_l2_0.png", "encoded_l2_.exr"})
+        put(folder / "out" / name, "foreign");
+    auto output = OutputFolder::create(folder / "out");
+    ASSERT_TRUE(output.ok());
+    put(output->path() / "manifest.json", "new");
+    ASSERT_TRUE(output->commit().ok());
+    EXPECT_EQ(names_in(folder / "out"), (Names{"manifest.json", "encoded_l2_x.exr", "encoded_mine_0.exr",
+                                               "encoded_l2_0.png", "encoded_l2_.exr"}));
+}
+
 // A folder of the name of one of our files cannot be replaced: everything must be as before.
 TEST(OutputFolder, AFailureHalfWayPutsTheOldFilesBack) {
     const TemporaryFolder folder;

@@ -72,4 +72,10 @@ inline std::string page_file(PageFile kind, std::uint32_t page) {
     return name.stem + std::to_string(page) + name.extension;
 }
 
+// "encoded_l2": of what `lumel encode` writes, as .json and, for each page, _<page>.exr.
+inline std::string encoded_stem(const std::string& encoding) { return "encoded_" + encoding; }
+inline std::string encoded_page_file(const std::string& encoding, std::uint32_t page) {
+    return encoded_stem(encoding) + "_" + std::to_string(page) + ".exr";
+}
+
 }  // namespace lumel

@@ -19,7 +19,7 @@ expect 0 '' compare lit/encoded_irradiance_0.exr lit/lightmap_0.exr --max-error 
 
 expect 0 '' encode lit --table --table-texels 50
 [ "$(wc -l <out.txt)" -gt 60 ] || complain "the table is short: $(cat out.txt)"
-cut -d, -f8 out.txt | grep -qiE 'nan|inf' && complain 'the table has numbers that are none'
+cut -d, -f5- out.txt | grep -qiE 'nan|inf' && complain 'the table has numbers that are none'
 expect 0 'bytes a texel' encode lit --encoding auto --max-bytes 12 --table-texels 50
 expect 2 'no encoding fits' encode lit --encoding auto --max-bytes 2 --table-texels 50
 
@@ -27,9 +27,27 @@ expect 2 "there is no 'hhd'" encode lit --encoding hhd
 expect 2 'one of --encoding and --table' encode lit
 expect 2 'one of --encoding and --table' encode lit --table --encoding l2
 expect 2 '--max-bytes needs' encode lit --encoding l2 --max-bytes 4
+expect 2 '--table prints' encode lit --table -o elsewhere
+expect 2 '--table prints' encode lit --table --format exr
+expect 2 '--table-texels needs' encode lit --encoding l2 --table-texels 50
 expect 1 'nowhere' encode nowhere --encoding l2
+compgen -G 'lit/*.partial-*' >/dev/null && complain "left $(echo lit/*.partial-*)"
+
+# The encoded files are of this bake: they go when another takes its place, and those elsewhere stay.
+expect 0 '' bake ok.gltf -o lit "${quick[@]}" --progress none
+compgen -G 'lit/encoded_*' >/dev/null && complain "a new bake left $(echo lit/encoded_*)"
+[ -s elsewhere/encoded_l1-hhd_0.exr ] || complain 'the page elsewhere is gone'
+
+# Pages are those of the manifest.
+sed -E 's/"width": ?32/"width": 31/' lit/manifest.json >changed.json
+cmp -s changed.json lit/manifest.json && complain 'the manifest was not changed'
+cp lit/manifest.json good.json
+cp changed.json lit/manifest.json
+expect 1 'the manifest says 31 x 32' encode lit --encoding l2
+cp good.json lit/manifest.json
 rm lit/master_0.exr
-expect 1 'has no master_0.exr' encode lit --encoding l2
-head -c 3000 lit/lightmap_0.exr >lit/master_0.exr
 expect 1 'master_0.exr' encode lit --encoding l2
+head -c 3000 lit/lightmap_0.exr >lit/master_0.exr
+expect 1 'bake again' encode lit --encoding l2
+compgen -G 'lit/encoded_*' >/dev/null && complain "failures left $(echo lit/encoded_*)"
 finish

@@ -1,8 +1,10 @@
-// Any text as the manifest of an output folder: the light that it records is read back and lights a scene.
+// Any text as the manifest of an output folder: the masters that it names, the light that it records, which lights a
+// scene.
 #include "base/check.h"
 #include "fuzz/seed_corpus.h"
 #include "io/light_json.h"
 #include "io/light_record.h"
+#include "io/master.h"
 #include "lumel/bake.h"
 #include "scene/world_geometry.h"
 
@@ -15,6 +17,7 @@ std::vector<std::byte> seed(const lumel::SkyOptions& sky, const lumel::SunOption
                          {"sun", lumel::sun_json(sun)},
                          {"direct_scale", 2.0},
                          {"indirect_scale", 0.5}};
+    manifest["pages"].push_back({{"width", 8}, {"height", 16}, {"files", {{"master", {{"file", "master_0.exr"}}}}}});
     return lumel::fuzz::bytes_of(manifest.dump());
 }
 
@@ -37,6 +40,9 @@ extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const auto masters = lumel::parse_master_list({reinterpret_cast<const char*>(data), size}, "out", "fuzz.json");
+    if (masters.ok())
+        for (const lumel::MasterFile& page : masters->pages) LUMEL_CHECK(page.file.parent_path() == "out");
     const auto record = lumel::parse_light_record({reinterpret_cast<const char*>(data), size}, "out", "fuzz.json");
     if (!record.ok()) return 0;
     lumel::BakeOptions options;

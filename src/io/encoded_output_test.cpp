@@ -1,0 +1,109 @@
+#include "io/encoded_output.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "encode/encodings.h"
+#include "lumel/scene.h"
+#include "support/json_schema.h"
+#include "support/temporary_folder.h"
+
+namespace lumel {
+namespace {
+
+namespace fs = std::filesystem;
+using Names = std::set<std::string>;
+using Json = nlohmann::ordered_json;
+
+void put(const fs::path& path, const std::string& text) { std::ofstream(path) << text; }
+
+Json json_file(const fs::path& path) { return Json::parse(std::ifstream(path)); }
+
+Names names_in(const fs::path& folder) {
+    Names out;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) out.insert(entry.path().filename());
+    return out;
+}
+
+// A folder with a manifest, as far as it is read here.
+class EncodedFiles : public testing::Test {
+protected:
+    EncodedFiles() {
+        fs::create_directory(bake_);
+        put(bake_ / "manifest.json",
+            R"({"pages": [{"width": 3, "height": 2, "files": {"master": {"file": "master_0.exr"}}}]})");
+        record_.input_hash = std::string(32, 'a');
+        record_.include = {true, false, true};
+    }
+
+    Result<EncodedOutput> with_pages(std::size_t count) {
+        Result<EncodedOutput> out = EncodedOutput::create(bake_, kIrradZHhd, record_);
+        for (std::size_t p = 0; p < count && out.ok(); ++p) {
+            const EncodedPage page{3, 2, {0, kNone, kNone, kNone, kNone, kNone}, {Numbers{1, 2, 3, 0.5f, 0, 0}}};
+            EXPECT_TRUE(out->page(page, context_).ok());
+        }
+        return out;
+    }
+    MasterList masters() { return list_masters(bake_).value(); }
+
+    const test::TemporaryFolder folder_;
+    const fs::path bake_ = folder_ / "bake";
+    LightRecord record_;
+    Context context_;
+};
+
+TEST_F(EncodedFiles, AreDescribedAsTheSchemaSays) {
+    auto output = with_pages(2);
+    ASSERT_TRUE(output.ok()) << output.error().text();
+    ASSERT_TRUE(output->commit(masters()).ok());
+    const Json json = json_file(bake_ / "encoded_irradz-hhd.json");
+    const test::JsonSchema schema(json_file(std::string(LUMEL_SOURCE_DIR) + "/docs/schema/encoded.schema.json"));
+    for (const std::string& line : schema.errors(json)) ADD_FAILURE() << line;
+    EXPECT_EQ(json["layers"], Json({"direct", "indirect"}));
+    EXPECT_EQ(json["channels"].size(), kIrradZHhd.fields.size());
+    ASSERT_EQ(json["pages"].size(), 2u);
+    EXPECT_EQ(json["pages"][1],
+              Json({{"file", "encoded_irradz-hhd_1.exr"}, {"width", 3}, {"height", 2}, {"type", "half"}}));
+    Json broken = json;
+    broken["pages"][0]["type"] = "double";
+    EXPECT_FALSE(schema.errors(broken).empty());
+}
+
+TEST_F(EncodedFiles, AppearTogetherAndReplaceAllOlderOnes) {
+    put(bake_ / "encoded_irradz-hhd_1.exr", "older");
+    put(bake_ / "encoded_irradz-hhd_12.exr", "older");
+    put(bake_ / "encoded_l2_1.exr", "another");
+    put(bake_ / "encoded_irradz-hhd_notes.exr", "somebody's");
+    const Names before = names_in(bake_);
+    {
+        auto unfinished = with_pages(1);
+        ASSERT_TRUE(unfinished.ok());
+        EXPECT_FALSE(fs::exists(bake_ / "encoded_irradz-hhd_0.exr"));
+        EXPECT_TRUE(fs::exists(unfinished->partial() / "encoded_irradz-hhd_0.exr"));
+    }
+    EXPECT_EQ(names_in(bake_), before);
+    {
+        auto output = with_pages(1);
+        ASSERT_TRUE(output.ok());
+        ASSERT_TRUE(output->commit(masters()).ok());
+    }
+    EXPECT_EQ(names_in(bake_), (Names{"encoded_irradz-hhd.json", "encoded_irradz-hhd_0.exr", "encoded_l2_1.exr",
+                                      "encoded_irradz-hhd_notes.exr", "manifest.json"}));
+}
+
+TEST_F(EncodedFiles, OfABakeThatWasReplacedAreNotWritten) {
+    const MasterList source = masters();
+    auto output = with_pages(1);
+    ASSERT_TRUE(output.ok());
+    put(bake_ / "manifest.json", "{}");
+    const Status status = output->commit(source);
+    ASSERT_FALSE(status.ok());
+    EXPECT_NE(status.error().text().find("another bake"), std::string::npos) << status.error().text();
+    EXPECT_FALSE(fs::exists(bake_ / "encoded_irradz-hhd_0.exr"));
+}
+
+}  // namespace
+}  // namespace lumel
