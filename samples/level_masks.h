@@ -19,7 +19,7 @@ struct LevelMasks {
     double largest = 620.0;  // extent, texels
 };
 
-// The same on every platform but for the rounding of pow and exp.
+// The same on every platform but for the rounding of pow, exp, sin and cos; about as many texels as asked.
 std::vector<ChartMask> level_masks(const LevelMasks& level);
 
 }  // namespace lumel::samples

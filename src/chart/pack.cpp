@@ -56,7 +56,7 @@ public:
 
     Packing single(std::uint32_t width, std::uint32_t height) {
         const std::vector<Group> all = groups();
-        const Filled page = fill(all, width, height);
+        const Filled page = fill(all, width, height, true);
         result_.complete = page.groups.size() == all.size() && !context_.cancelled();
         if (result_.complete) close_page(page, height);
         return std::move(result_);
@@ -82,19 +82,25 @@ private:
         const std::uint32_t square = page_width(waiting, max_page);
         std::vector<double> factors{1.0};
         if (square < max_page && items_.size() <= kFewItems) factors = {1.0, 1.02, 1.04, 1.07, 1.1, 1.15, 0.95, 0.88};
-        const auto density = [](const Filled& page) {
-            const double area = static_cast<double>(page.width) * ((page.height + 3) / 4 * 4);
-            return area > 0.0 ? static_cast<double>(used_by(page.groups)) / area : 0.0;
-        };
+        const std::uint32_t narrowest = std::min((widest(waiting) + 3) / 4 * 4, max_page);
+        std::vector<std::uint32_t> tried;
         Filled best;
         for (const double factor : factors) {
             const auto wanted = static_cast<std::uint32_t>(factor * square + 3.0) / 4 * 4;
-            const std::uint32_t width =
-                factor == 1.0 ? square : std::clamp(wanted, widest(waiting), std::max(max_page, widest(waiting)));
-            Filled page = best_page(waiting, std::min(width, max_page), max_page);
-            if (density(page) > density(best)) best = std::move(page);
+            const std::uint32_t width = factor == 1.0 ? square : std::clamp(wanted, narrowest, max_page);
+            if (std::ranges::find(tried, width) != tried.end()) continue;
+            tried.push_back(width);
+            Filled page = best_page(waiting, width, max_page);
+            if (is_better(page, best)) best = std::move(page);
         }
         return best;
+    }
+
+    // What a page does not hold opens another one, which costs more than a less dense page does.
+    static bool is_better(const Filled& a, const Filled& b) {
+        const std::uint64_t used_a = used_by(a.groups), used_b = used_by(b.groups);
+        const auto area = [](const Filled& page) { return std::uint64_t{page.width} * ((page.height + 3) / 4 * 4); };
+        return used_a != used_b ? used_a > used_b : used_a > 0 && area(a) < area(b);
     }
 
     [[nodiscard]] std::uint32_t widest(const std::vector<Group>& waiting) const {
@@ -158,8 +164,9 @@ private:
     }
 
     // One page of as many charts of these groups as fit; `used` counts those of groups that are not on it as a whole,
-    // too.
-    Filled fill(const std::vector<Group>& chosen, std::uint32_t width, std::uint32_t height) {
+    // too. All or nothing: fewer where not all do.
+    Filled fill(const std::vector<Group>& chosen, std::uint32_t width, std::uint32_t height,
+                bool all_or_nothing = false) {
         std::vector<std::uint32_t> mask_of;
         for (const Group& g : chosen)
             for (std::uint32_t i = g.first; i < g.last; ++i) mask_of.push_back(items_[i].mask);
@@ -167,7 +174,7 @@ private:
         options.width = width;
         options.height = height;
         options.orientations = Orientations::one;
-        options.progress = false;
+        options.all_or_nothing = all_or_nothing;
         const PageFill page = fill_page(masks_, mask_of, options, context_);
         Filled out;
         out.used = page.used;

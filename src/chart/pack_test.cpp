@@ -125,6 +125,33 @@ TEST(Pack, AChartAsLargeAsThePage) {
     EXPECT_EQ(conflicts(level, packing), 0u);
 }
 
+// A narrower page that is full to the brim, but without three of the charts, is no better than one that holds all.
+TEST(Pack, APageThatHoldsAllIsBetterThanAFullOne) {
+    Level level;
+    level.masks = {rectangle(9, 9)};
+    for (std::uint32_t g = 0; g < 171; ++g) level.items.push_back({0, g});
+    level.used = 171 * 81;
+    Context context(1);
+    const Packing packing = pack(level.masks, level.items, 128, context);
+    ASSERT_TRUE(packing.complete);
+    EXPECT_EQ(packing.pages.size(), 1u);
+    EXPECT_EQ(conflicts(level, packing), 0u);
+}
+
+// The widest chart decides how narrow a page may be; blocks of four texels count all the same.
+TEST(Pack, PagesOfAWideChartAreWholeBlocksWide) {
+    Level level;
+    level.masks = {rectangle(61, 2)};
+    level.items = {{0, 0}};
+    level.used = 61 * 2;
+    Context context(1);
+    for (const auto& [max_page, width] : {std::pair{128u, 64u}, std::pair{62u, 62u}}) {
+        const Packing packing = pack(level.masks, level.items, max_page, context);
+        ASSERT_TRUE(packing.complete);
+        EXPECT_EQ(packing.pages[0].width, width);
+    }
+}
+
 TEST(Pack, OnePageFitsOrNot) {
     const Level level = random_level(20, 50, 60, 3);
     const auto edge = static_cast<std::uint32_t>(std::ceil(std::sqrt(static_cast<double>(level.used) / 0.8)));

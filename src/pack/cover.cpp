@@ -46,18 +46,20 @@ ChartMask larger_squares(const ChartMask& squares, std::uint32_t step) {
 
 class Coverer {
 public:
-    explicit Coverer(const ChartMask& mask) : left_(mask) {}
+    Coverer(const ChartMask& mask, const std::function<bool()>& cancelled) : left_(mask), cancelled_(cancelled) {}
 
     std::vector<CoverSquare> run(std::uint32_t max_level) {
         std::vector<ChartMask> squares{left_};
-        while (squares.size() <= max_level) {
+        while (squares.size() <= max_level && !cancelled_()) {
             ChartMask larger =
                 larger_squares(squares.back(), kSquareSides[squares.size()] - kSquareSides[squares.size() - 1]);
             if (larger.count() == 0) break;
             squares.push_back(std::move(larger));
         }
-        for (std::size_t level = squares.size(); level-- > 0;)
+        for (std::size_t level = squares.size(); level-- > 0;) {
             take_squares(squares[level], static_cast<std::uint32_t>(level));
+            squares.pop_back();
+        }
         return std::move(out_);
     }
 
@@ -65,7 +67,7 @@ private:
     // Those whose corner is not covered yet and that cover a quarter of their own area anew.
     void take_squares(const ChartMask& squares, std::uint32_t level) {
         const std::uint32_t side = kSquareSides[level], enough = (side * side + 3) / 4;
-        for (std::uint32_t y = 0; y < squares.height; ++y)
+        for (std::uint32_t y = 0; y < squares.height && !cancelled_(); ++y)
             for (std::uint32_t w = 0; w < squares.words_per_row; ++w) {
                 const std::size_t word = std::size_t{y} * squares.words_per_row + w;
                 std::uint64_t tried = 0;
@@ -99,13 +101,14 @@ private:
     }
 
     ChartMask left_;  // texels that no square covers yet
+    const std::function<bool()>& cancelled_;
     std::vector<CoverSquare> out_;
 };
 
 }  // namespace
 
-std::vector<CoverSquare> cover(const ChartMask& mask, std::uint32_t max_level) {
-    return mask.is_rectangle() ? cover_rectangle(mask, max_level) : Coverer(mask).run(max_level);
+std::vector<CoverSquare> cover(const ChartMask& mask, std::uint32_t max_level, const std::function<bool()>& cancelled) {
+    return mask.is_rectangle() ? cover_rectangle(mask, max_level) : Coverer(mask, cancelled).run(max_level);
 }
 
 }  // namespace lumel

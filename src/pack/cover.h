@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "pack/mask.h"
@@ -25,6 +26,8 @@ struct CoverSquare {
 };
 
 // The squares cover the mask's texels, all of them and no others; the largest come first. Not the fewest possible.
-std::vector<CoverSquare> cover(const ChartMask& mask, std::uint32_t max_level);
+// Where `cancelled` says so it returns early, with some texels not covered.
+std::vector<CoverSquare> cover(
+    const ChartMask& mask, std::uint32_t max_level, const std::function<bool()>& cancelled = [] { return false; });
 
 }  // namespace lumel

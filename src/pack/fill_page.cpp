@@ -56,16 +56,13 @@ std::vector<Strategy> strategies(std::size_t charts, std::uint64_t texels, Orien
 }
 
 PageFill fill(const Kinds& kinds, const Sorted& sorted, const Strategy& strategy, std::size_t charts,
-              const FillOptions& options, const Context& context) {
+              const FillOptions& options, const Context& context, const std::function<void(std::size_t)>& on_placed) {
     PageWork work(kinds, strategy, options.width, options.height == 0 ? kNoLimit : options.height, sorted.max_level,
                   charts);
     work.cancelled = [&context] { return context.cancelled(); };
-    if (options.progress)
-        work.progress = [&] {
-            context.report("pack", static_cast<double>(work.fill.placed) / static_cast<double>(charts));
-        };
-    place_large_charts(work, sorted.large);
-    place_tiny_charts(work, sorted.tiny);
+    work.on_placed = on_placed;
+    work.all_or_nothing = options.all_or_nothing;
+    if (place_large_charts(work, sorted.large)) place_tiny_charts(work, sorted.tiny);
     return std::move(work.fill);
 }
 
@@ -86,17 +83,15 @@ PageFill fill_page(std::span<const ChartMask> masks, std::span<const std::uint32
         texels += masks[m].used;
     }
     const std::vector<Strategy> all = strategies(mask_of.size(), texels, options.orientations);
-    FillOptions quiet = options;
-    quiet.progress = options.progress && all.size() == 1;
+    if (all.size() == 1) return fill(kinds, sorted, all[0], mask_of.size(), options, context, options.on_placed);
     std::vector<PageFill> fills(all.size());
     fills[0].spots.resize(mask_of.size());  // where cancelled before it began
     parallel_for(context, all.size(), 1, [&](const ChunkRange& range) {
-        fills[range.index] = fill(kinds, sorted, all[range.index], mask_of.size(), quiet, context);
+        fills[range.index] = fill(kinds, sorted, all[range.index], mask_of.size(), options, context, {});
     });
     std::size_t best = 0;
     for (std::size_t i = 1; i < fills.size(); ++i)
         if (is_better(fills[i], fills[best])) best = i;
-    if (options.progress) context.report("pack", 1.0);
     return std::move(fills[best]);
 }
 

@@ -2,7 +2,9 @@
 // they left.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 
 #include "lumel/context.h"
@@ -14,14 +16,16 @@ namespace lumel {
 enum class Orientations : std::uint8_t {
     automatic,  // all of tiny charts, and of large ones where the charts are so few that it helps
     one,        // none is turned
-    eight,      // all of all charts
+    eight,      // all of all charts but those that are not worth it: see worth_turning() in page_work.h
 };
 
 struct FillOptions {
     std::uint32_t width = 0;   // texels, 1 .. FreeMap::kMaxWidth
     std::uint32_t height = 0;  // most rows; 0: as many as it takes
     Orientations orientations = Orientations::automatic;
-    bool progress = true;  // reports the stage "pack"
+    bool all_or_nothing = false;  // stops at the first large chart that has no place
+    // Charts placed so far: told often, on the calling thread; not where several strategies are tried at once.
+    std::function<void(std::size_t placed)> on_placed;
 };
 
 // `mask_of`: the mask of each chart; none is wider than a page without a limit of height. Several strategies are tried

@@ -5,9 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <thread>
 
+#include "base/stopwatch.h"
+#include "pack/cover.h"
+#include "pack/large_charts.h"
 #include "pack/pack_pages.h"
 #include "pack/sweep.h"
+#include "pack/tiny_charts.h"
 #include "support/pack_checker.h"
 #include "support/random_masks.h"
 
@@ -80,18 +85,41 @@ TEST(PackPages, BeatsTheSweep) {
     EXPECT_GT(efficiency(pack_with(masks, options)), plain);
 }
 
-// A room: few charts, the largest of them rectangles. They must not be kept for the end, when they only fit below.
-TEST(PackPages, LargeRectanglesAreNotLeftForTheEnd) {
+// A room: few charts, the largest of them rectangles. Where those that are no rectangles go first they must not be kept
+// for the end all the same, when they only fit below.
+TEST(LargeCharts, LargeRectanglesAreNotLeftForTheEnd) {
     std::vector<ChartMask> masks = test::random_masks(150, 60, 7);
+    std::erase_if(masks, is_tiny);
     for (const std::uint32_t size : {150u, 130u, 90u, 70u}) masks.push_back(test::rectangle_mask(size, 3 * size / 4));
     std::vector<std::uint32_t> all(masks.size());
     std::iota(all.begin(), all.end(), 0u);
-    PackOptions options;
-    options.orientations = Orientations::one;
-    const PagePacking packing = pack_with(masks, options);
-    check(masks, packing);
+    const Kinds kinds = group_equal(masks, all);
+    std::vector<std::uint32_t> order(kinds.kinds.size());
+    std::iota(order.begin(), order.end(), 0u);
+    const std::uint32_t width = default_width(masks);
+    Strategy strategy;
+    ASSERT_TRUE(strategy.irregular_first);
+    PageWork work(kinds, strategy, width, 4096, 19, masks.size());
+    work.cancelled = [] { return false; };
+    EXPECT_TRUE(place_large_charts(work, order));
+    EXPECT_EQ(work.fill.placed, masks.size());
     Context context(1);
-    EXPECT_LE(packing.pages[0].height, sweep_page(masks, all, packing.width, context).height);
+    EXPECT_LE(work.fill.height, sweep_page(masks, all, width, context).height);
+}
+
+// The second chart has no place: it ends there, or goes on with what fits.
+TEST(FillPage, AllOrNothingStopsAtOnce) {
+    std::vector<ChartMask> masks;
+    for (const std::uint32_t size : {60u, 50u, 20u, 4u}) masks.push_back(test::rectangle_mask(size, 10));
+    masks[1] = test::rectangle_mask(20, 50);
+    const std::vector<std::uint32_t> all{0, 1, 2, 3};
+    Context context(1);
+    FillOptions options;
+    options.width = 64;
+    options.height = 25;
+    EXPECT_EQ(fill_page(masks, all, options, context).placed, 3u);
+    options.all_or_nothing = true;
+    EXPECT_LT(fill_page(masks, all, options, context).placed, 3u);
 }
 
 TEST(PackPages, PagesAreFilledInTurn) {
@@ -144,10 +172,78 @@ TEST(PackPages, OddCharts) {
     }
 }
 
+// Before it begins, and in the midst of large and of tiny charts: the rest is left out.
 TEST(PackPages, StopsWhenAsked) {
+    const std::vector<ChartMask> masks = test::random_masks(100, 60, 5);
     Context context(1);
     context.request_cancel();
-    EXPECT_FALSE(pack_pages(test::random_masks(100, 60, 5), {}, context).complete);
+    EXPECT_FALSE(pack_pages(masks, {}, context).complete);
+
+    const std::vector<ChartMask> many = test::random_masks(7000, 60, 5);
+    const auto large =
+        static_cast<std::size_t>(std::ranges::count_if(many, [](const ChartMask& m) { return !is_tiny(m); }));
+    for (const std::size_t at : {large / 2, large + 1000}) {
+        std::vector<std::uint32_t> all(many.size());
+        std::iota(all.begin(), all.end(), 0u);
+        Context midway(2);
+        FillOptions options;
+        options.width = 512;
+        options.on_placed = [&](std::size_t placed) {
+            if (placed >= at) midway.request_cancel();
+        };
+        const PageFill fill = fill_page(many, all, options, midway);
+        EXPECT_GE(fill.placed, at);
+        EXPECT_LT(fill.placed, at + 32);  // told of every 16th
+    }
+}
+
+// Also the search for squares in one large chart: checkered texels have the most.
+TEST(Cover, StopsWhenAsked) {
+    ChartMask checkered(1024, 1024);
+    for (std::uint32_t y = 0; y < 1024; ++y)
+        for (std::uint32_t x = y % 2; x < 1024; x += 2) checkered.set(x, y);
+    checkered.used = checkered.count();
+    EXPECT_EQ(cover(checkered, 19).size(), 1024u * 512);
+    int asked = 0;
+    EXPECT_LT(cover(checkered, 19, [&] { return ++asked > 100; }).size(), 1024u * 60);
+}
+
+// One run from 0 to 1 over all pages, on the thread that asked, some ten times a second.
+TEST(PackPages, ReportsItsProgress) {
+    const std::vector<ChartMask> masks = test::random_masks(9000, 60, 8);
+    Context context(2);
+    std::vector<double> fractions;
+    bool elsewhere = false;
+    const std::thread::id here = std::this_thread::get_id();
+    context.on_progress = [&](const Progress& progress) {
+        fractions.push_back(progress.fraction);
+        elsewhere |= std::this_thread::get_id() != here;
+    };
+    PackOptions options;
+    options.max_page = 128;
+    const Stopwatch time;
+    const PagePacking packing = pack_pages(masks, options, context);
+    ASSERT_GT(packing.pages.size(), 3u);
+    EXPECT_FALSE(elsewhere);
+    EXPECT_TRUE(std::ranges::is_sorted(fractions));
+    ASSERT_FALSE(fractions.empty());
+    EXPECT_EQ(fractions.back(), 1.0);
+    EXPECT_LE(static_cast<double>(fractions.size()), time.seconds() * 10 + 1);
+}
+
+// Narrow pages take many times the memory of their texels, and the estimate knows.
+TEST(PackPages, EstimatesTheMemoryOfAPage) {
+    const std::vector<ChartMask> masks(1000, test::rectangle_mask(33, 1000));
+    PackOptions options;
+    options.width = 64;
+    // A million rows of ten words and a summary by 17 sides, the largest 32.
+    EXPECT_GE(page_bytes(masks, options), 1'000'000u * 11 * 8 * 16);
+    EXPECT_LE(page_bytes(masks, options), 1'100'000u * 11 * 8 * 17);
+    const std::uint64_t narrow = page_bytes(masks, options);
+    options.width = 0;
+    EXPECT_LT(page_bytes(masks, options), narrow / 3);
+    options.max_page = 1024;
+    EXPECT_LT(page_bytes(masks, options), std::uint64_t{1024} * 1024 * 20 / 8 * 2);
 }
 
 TEST(PackPages, NothingIsNoPage) { EXPECT_TRUE(pack_with({}, {}).pages.empty()); }

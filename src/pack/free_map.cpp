@@ -6,12 +6,8 @@
 
 namespace lumel {
 
-// A word to the left, a block and a word to the right: room for what shifts bring in.
 FreeMap::FreeMap(std::uint32_t width, std::uint32_t height, std::uint32_t max_level)
-    : width_(width),
-      height_(height),
-      stride_(((width + kBlockBits - 1) / kBlockBits + 1) * kBlockWords + 2),
-      unit_shift_(6) {
+    : width_(width), height_(height), stride_(words_per_row(width)), unit_shift_(6) {
     LUMEL_CHECK(width > 0 && width <= kMaxWidth && max_level < kSquareSides.size(), width, max_level);
     while ((width - 1) >> unit_shift_ >= 64) ++unit_shift_;
     levels_.resize(max_level + 1);

@@ -33,6 +33,11 @@ public:
     // Positions that a bit of units() stands for, as a power of two: 64 to a block of 256.
     [[nodiscard]] std::uint32_t unit_shift() const { return unit_shift_; }
 
+    // Bytes of a row.
+    [[nodiscard]] static std::uint64_t row_bytes(std::uint32_t width, std::uint32_t max_level) {
+        return std::uint64_t{max_level + 1} * 8 * (words_per_row(width) + 1);
+    }
+
     // Makes rows up to this one exist; invalidates pointers. Searches may look only at rows that exist.
     void reach(std::uint32_t row);
 
@@ -55,6 +60,10 @@ private:
     };
     [[nodiscard]] std::size_t offset(std::int64_t y) const {
         return static_cast<std::size_t>(y + kRowsAbove) * stride_ + 1;
+    }
+    // A word to the left, a block and a word to the right: room for what shifts bring in.
+    static constexpr std::uint32_t words_per_row(std::uint32_t width) {
+        return ((width + kBlockBits - 1) / kBlockBits + 1) * kBlockWords + 2;
     }
     void free_rows(std::uint32_t level, std::uint32_t first, std::uint32_t end);
     void summarise(std::uint32_t level, std::uint32_t y, std::uint32_t x0, std::uint32_t x1);

@@ -122,7 +122,7 @@ LUMEL_INLINE bool next_fit_body(const FreeMap& map, const CoverSquare* squares, 
 
 // ---- The cost of a position -----------------------------------------------------------------------------------------
 
-// Free texels of the rim that lie in no free square of 2 x 2. `squares` has a row more than the frame.
+// Free texels of the rim that lie in no free square of 2 x 2.
 LUMEL_INLINE std::int32_t count_stranded(const FrameView& frame, const std::uint64_t* free, std::uint64_t* squares) {
     const std::size_t rows = frame.rows;
     // Squares begin where the texel, the one to its right and the two below are free.

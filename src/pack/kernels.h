@@ -42,7 +42,7 @@ struct Kernels {
     bool (*next_fit)(const FreeMap& map, const CoverSquare* squares, std::size_t count, std::uint32_t last_x,
                      std::uint32_t last_y, FitSearch& search);
     // What placing a chart costs its surroundings. `texels`: the row two above the chart's box, the word that holds the
-    // texel two to its left, which is bit `shift`; `scratch`: 4 (columns + 2) rows + 2 words, of any content.
+    // texel two to its left, which is bit `shift`; `scratch`: 3 (columns + 2) rows words, of any content.
     FrameRating (*rate)(const FrameView& frame, const std::uint64_t* texels, std::size_t stride, std::uint32_t shift,
                         std::uint64_t* scratch);
     // The first i in [begin, end) with no bit of a[i], b[i] among the given ones; `end` if there is none. The arrays

@@ -30,7 +30,7 @@ public:
     }
 
     [[nodiscard]] FrameView view() const { return {columns_, rows_, mask_.data(), rim_.data(), side_.data()}; }
-    [[nodiscard]] std::size_t scratch_words() const { return std::size_t{columns_ + 2} * rows_ * 4 + 2; }
+    [[nodiscard]] std::size_t scratch_words() const { return std::size_t{columns_ + 2} * rows_ * 3; }
 
 private:
     [[nodiscard]] std::size_t at(std::uint32_t column, std::uint32_t row) const {
@@ -91,28 +91,32 @@ class LargeCharts {
 public:
     explicit LargeCharts(PageWork& work) : work_(work), kernels_(kernels()) {}
 
-    void place(const Kind& kind, std::uint32_t max_level) {
+    // False where the page has no more place for charts of this kind.
+    bool place(const Kind& kind, std::uint32_t max_level) {
         make_poses(*kind.mask, max_level);
         for (std::uint32_t i = 0; i < kind.count && !work_.cancelled(); ++i) {
             std::optional<Position> position;
             if (work_.strategy.candidates > 0) position = best_position();
             if (!position) position = lowest_position();
-            if (!position) return;  // nor will the others of the kind fit
+            if (!position) return work_.cancelled();  // else the others of the kind will not fit, either
             const Pose& pose = poses_[position->pose];
             work_.map.take(pose.mask, position->x, position->y, max_level);
             work_.placed(work_.kinds.charts[kind.first + i], pose.mask, pose.orientation, position->x, position->y,
                          position->y + rows_used(pose.mask));
         }
+        return true;
     }
 
 private:
     void make_poses(const ChartMask& mask, std::uint32_t max_level) {
         poses_.clear();
-        for (const std::uint8_t orientation : distinct_orientations(mask, work_.strategy.turn_large)) {
+        const bool turn = work_.strategy.turn_large && worth_turning(mask);
+        for (const std::uint8_t orientation : distinct_orientations(mask, turn)) {
             ChartMask turned = oriented(mask, orientation);
             if (turned.width > work_.map.width() || turned.height > work_.map.height()) continue;
             Pose pose{orientation, std::move(turned), {}, {}, 0};
-            pose.squares = cover(pose.mask, max_level);
+            pose.squares = cover(pose.mask, max_level, work_.cancelled);
+            if (work_.cancelled()) return poses_.clear();  // not all of it may be covered
             if (work_.strategy.candidates > 0) {
                 pose.frame.emplace(pose.mask);
                 scratch_.resize(std::max(scratch_.size(), pose.frame->scratch_words()));
@@ -139,7 +143,7 @@ private:
             FitSearch search{pose.first_row, 0, {}};
             bool found = false;
             std::uint32_t seen = 0;
-            while (seen < work_.strategy.candidates && next_fit(pose, last_y, search)) {
+            while (seen < work_.strategy.candidates && !work_.cancelled() && next_fit(pose, last_y, search)) {
                 if (!found) pose.first_row = search.y;
                 found = true;
                 compare(p, run_ends(search), seen, least, best);
@@ -155,7 +159,7 @@ private:
         const FrameView frame = poses_[p].frame->view();
         for (std::uint32_t w = 0; w < FreeMap::kBlockWords; ++w)
             for (std::uint64_t left = ends.fits[w]; left != 0; left &= left - 1) {
-                if (seen++ == work_.strategy.candidates) return;
+                if (seen++ == work_.strategy.candidates || work_.cancelled()) return;
                 const std::uint32_t x =
                     ends.block * FreeMap::kBlockBits + w * 64 + static_cast<std::uint32_t>(std::countr_zero(left));
                 const std::uint64_t* texels = work_.map.row(0, std::int64_t{ends.y} - 2) + (x + 62) / 64 - 1;
@@ -218,7 +222,7 @@ std::vector<std::uint8_t> distinct_orientations(const ChartMask& mask, bool turn
 
 std::uint32_t level_of(const ChartMask& mask) { return square_level(std::min(mask.width, mask.height)); }
 
-void place_large_charts(PageWork& work, std::span<const std::uint32_t> kinds) {
+bool place_large_charts(PageWork& work, std::span<const std::uint32_t> kinds) {
     std::vector<std::uint32_t> order(kinds.begin(), kinds.end());
     const auto key = [&](std::uint32_t k) {
         const ChartMask& m = *work.kinds.kinds[k].mask;
@@ -238,7 +242,10 @@ void place_large_charts(PageWork& work, std::span<const std::uint32_t> kinds) {
         max_level[i] = level = std::max(level, level_of(*work.kinds.kinds[order[i]].mask));
     LargeCharts charts(work);
     for (std::size_t i = 0; i < order.size() && !work.cancelled(); ++i)
-        charts.place(work.kinds.kinds[order[i]], std::min(max_level[i], work.map.max_level()));
+        if (!charts.place(work.kinds.kinds[order[i]], std::min(max_level[i], work.map.max_level())) &&
+            work.all_or_nothing)
+            return false;
+    return true;
 }
 
 }  // namespace lumel

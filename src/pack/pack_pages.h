@@ -37,6 +37,10 @@ struct PagePacking {
 // A page that is about square where 98 % of it is used, but no narrower than the widest chart.
 std::uint32_t default_width(std::span<const ChartMask> masks);
 
+// About the most memory that the free map of a page (free_map.h) takes: for rows as if half of the page were boxes of
+// charts. Much more than the masks' own where a page is narrow or rows of it hold few texels.
+std::uint64_t page_bytes(std::span<const ChartMask> masks, const PackOptions& options);
+
 // Where one page does not hold all, the charts that are hardest to place go to the first ones; a page is filled before
 // the next one is begun. The same for any number of threads.
 // Precondition: no mask is wider than the width, or higher than max_page.

@@ -46,7 +46,8 @@ struct PageWork {
     FreeMap map;
     PageFill fill;
     std::function<bool()> cancelled;
-    std::function<void()> progress;
+    std::function<void(std::size_t placed)> on_placed;  // may be none
+    bool all_or_nothing = false;
 
     void placed(std::uint32_t chart, const ChartMask& mask, std::uint8_t orientation, std::uint32_t x, std::uint32_t y,
                 std::uint32_t bottom) {
@@ -54,9 +55,15 @@ struct PageWork {
         fill.height = bottom > fill.height ? bottom : fill.height;
         fill.used += mask.used;
         ++fill.placed;
-        if (fill.placed % 1024 == 0 && progress) progress();
+        if (fill.placed % 16 == 0 && on_placed) on_placed(fill.placed);
     }
 };
+
+// Larger charts are not turned: there are few in a page, and all that is kept for a pose grows with their texels.
+inline bool worth_turning(const ChartMask& mask) {
+    constexpr std::uint64_t kMost = 512 * 512;
+    return std::uint64_t{mask.width} * mask.height <= kMost;
+}
 
 // The orientations in which a mask looks different, in order; just 0 where it is not to be turned.
 std::vector<std::uint8_t> distinct_orientations(const ChartMask& mask, bool turn);

@@ -58,13 +58,21 @@ Reach reach_of(const TinyWindow& texels) {
 class TinyCharts {
 public:
     TinyCharts(PageWork& work, std::span<const std::uint32_t> kinds) : work_(work), kernels_(kernels()) {
+        // So many different masks fill holes as they are, and each orientation takes more memory than its mask does.
+        constexpr std::size_t kTurned = 250'000;
+        const bool turn = work.strategy.turn_tiny && kinds.size() <= kTurned;
         left_.resize(work.kinds.kinds.size(), 0);
+        variants_of_.resize(left_.size(), 0);
+        if (!turn) variants_.reserve(kinds.size());
         for (const std::uint32_t k : kinds) {
             const Kind& kind = work.kinds.kinds[k];
+            if (work.cancelled()) return;
             left_[k] = kind.count;
             remaining_ += kind.count;
-            for (const std::uint8_t o : distinct_orientations(*kind.mask, work.strategy.turn_tiny))
+            for (const std::uint8_t o : distinct_orientations(*kind.mask, turn)) {
                 variants_.push_back(make_variant(*kind.mask, k, o));
+                ++variants_of_[k];
+            }
         }
         // Alike ones side by side: their clusters have much in common.
         std::stable_sort(variants_.begin(), variants_.end(), [](const Variant& a, const Variant& b) {
@@ -79,7 +87,7 @@ public:
             work_.map.reach(y + kTinyRows);
             std::uint64_t* row = work_.map.texels(y);
             for (std::uint32_t w = 0; w < words && remaining_ > 0; ++w)
-                while (row[w] != 0 && remaining_ > 0)
+                while (row[w] != 0 && remaining_ > 0 && !work_.cancelled())
                     fill_hole(w * 64 + static_cast<std::uint32_t>(std::countr_zero(row[w])), y);
         }
     }
@@ -144,7 +152,7 @@ private:
         work_.placed(work_.kinds.charts[kind.first + kind.count - left_[v.kind]], *kind.mask, v.orientation, x - v.lead,
                      y, y + v.height);
         --remaining_;
-        if (--left_[v.kind] == 0) forget_exhausted();
+        if (--left_[v.kind] == 0) forget(v.kind);
     }
 
     std::size_t best_variant(const TinyWindow& window) {
@@ -179,9 +187,11 @@ private:
         }
     }
 
-    // Variants of kinds that are used up slow the search; they are thrown out some at a time.
-    void forget_exhausted() {
-        if (++exhausted_ < 32 && remaining_ >= 2000) return;
+    // Variants of kinds that are used up slow the search; they are thrown out where they are an eighth of all: so each
+    // costs a few of the others, however many there are.
+    void forget(std::uint32_t kind) {
+        exhausted_ += variants_of_[kind];
+        if (exhausted_ * 8 < variants_.size()) return;
         exhausted_ = 0;
         std::erase_if(variants_, [&](const Variant& v) { return left_[v.kind] == 0; });
         index();
@@ -191,7 +201,8 @@ private:
     const Kernels& kernels_;
     std::vector<std::uint32_t> left_;  // charts per kind
     std::size_t remaining_ = 0;
-    std::uint32_t exhausted_ = 0;
+    std::vector<std::uint8_t> variants_of_;  // per kind
+    std::size_t exhausted_ = 0;              // variants
     std::vector<Variant> variants_;
     std::size_t clusters_ = 0;
     Table masks_, common_;
