@@ -35,6 +35,24 @@ Atlas kept_atlas(const Scene& scene, const WorldGeometry& geometry, const ChartS
     return atlas;
 }
 
+// What the texels of charts are made by must be possible, and pages whole cells.
+Status check_masks(const ChartOptions& options) {
+    const MaskRule& rule = options.masks;
+    const auto bad = [](std::string message, std::string remedy) {
+        return Error{ErrorCode::usage, std::move(message), {}, std::move(remedy)};
+    };
+    if (rule.mips > MaskRule::kMaxMips)
+        return bad("charts cannot be kept apart in mip " + std::to_string(rule.mips),
+                   "ask for " + std::to_string(MaskRule::kMaxMips) + " at most");
+    if (rule.block != 1 && rule.block != 4)
+        return bad("blocks of " + std::to_string(rule.block) + " texels are not known", "ask for 1 or 4");
+    if (options.resolution_width % rule.cell() == 0 && options.resolution_height % rule.cell() == 0) return success();
+    return bad("a page of " + std::to_string(options.resolution_width) + "x" +
+                   std::to_string(options.resolution_height) + " texels is no whole number of cells of " +
+                   std::to_string(rule.cell()),
+               "ask for a --resolution of multiples of " + std::to_string(rule.cell()));
+}
+
 class AtlasMaker {
 public:
     AtlasMaker(const Scene& scene, const ChartSet& charts, const ChartOptions& options, Context& context)
@@ -67,7 +85,8 @@ private:
         density_ = options_.texels_per_metre;
         if (!(density_ > 0.0)) {
             // A budget that the smallest charts eat by more than half is too small to be meant.
-            const double budget = std::max(options_.texel_budget, 2.0 * least_texels(instances_));
+            const double budget =
+                std::max(options_.texel_budget, 2.0 * least_texels(instances_, BudgetOf::baked, options_.masks));
             LUMEL_TRY(density_, solve_density(charts_, instances_, budget, BudgetOf::baked, limit, context_));
         }
         if (!draw(limit)) return cancelled_error();
@@ -90,7 +109,8 @@ private:
             return fits ? success() : no_room();
         }
         const double page = page_texels();
-        for (double texels = 0.99 * page; texels > least_texels(instances_); texels *= kStep) {
+        const double least = least_texels(instances_, BudgetOf::page, options_.masks);
+        for (double texels = 0.99 * page; texels > least; texels *= kStep) {
             LUMEL_TRY(density_, solve_density(charts_, instances_, texels, BudgetOf::page, limit, context_));
             LUMEL_TRY(const bool fits, try_resolution(limit));
             if (fits) return success();
@@ -173,6 +193,7 @@ private:
 Result<Atlas> make_atlas(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts,
                          const ChartOptions& options, Context& context) {
     if (charts.scene_wide) return kept_atlas(scene, geometry, charts, options);
+    LUMEL_TRY_STATUS(check_masks(options));
     return AtlasMaker(scene, charts, options, context).run();
 }
 

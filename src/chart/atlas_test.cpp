@@ -203,6 +203,32 @@ TEST(Atlas, WhatDoesNotFitIsAnError) {
     EXPECT_NE(dense.error().text().find("--texels-per-metre"), std::string::npos);
 }
 
+TEST(Atlas, RefusesMasksThatCannotBe) {
+    const Level level = mixed_level();
+    Context context(1);
+    const auto charts = make_charts(level.scene, level.geometry, {}, context);
+    ASSERT_TRUE(charts.ok());
+    const auto fault = [&](const ChartOptions& options) {
+        const auto atlas = make_atlas(level.scene, level.geometry, *charts, options, context);
+        if (atlas.ok()) return std::string("none");
+        EXPECT_EQ(atlas.error().code, ErrorCode::usage);
+        return atlas.error().text();
+    };
+    ChartOptions options;
+    options.masks.mips = 7;
+    EXPECT_EQ(fault(options), "charts cannot be kept apart in mip 7 (ask for 6 at most)");
+    options.masks.mips = 0;
+    options.masks.block = 2;
+    EXPECT_EQ(fault(options), "blocks of 2 texels are not known (ask for 1 or 4)");
+    options.masks.block = 4;
+    options.resolution_width = 256;
+    options.resolution_height = 250;
+    EXPECT_EQ(fault(options),
+              "a page of 256x250 texels is no whole number of cells of 4 (ask for a --resolution of multiples of 4)");
+    options.resolution_height = 252;
+    EXPECT_EQ(fault(options), "none");
+}
+
 // A wall of 100 m and one of 10 m, both 1 m high, at 8 texels a metre on pages of 128: the long one gets 127 steps of
 // the 800 that were asked for, along its length alone.
 TEST(Atlas, DensityIsWhatWasReached) {

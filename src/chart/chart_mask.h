@@ -25,9 +25,11 @@ struct TexelMap {
 // of the lowest mip, or a block. Masks are in cells, and charts lie on whole ones.
 struct MaskRule {
     enum class Filter : std::uint8_t { bilinear, bicubic };  // 2 x 2 texels, 4 x 4
+    static constexpr std::uint32_t kMaxMips = 6;
 
     Filter filter = Filter::bilinear;
-    std::uint32_t mips = 0;   // lookups in mips 0..this one, 0..6: their texels hold the light of one chart, too
+    std::uint32_t mips =
+        0;  // lookups in mips 0..this one, at most kMaxMips: their texels hold the light of one chart, too
     std::uint32_t block = 1;  // 4: no block of 4 x 4 texels of the page (mip 0) holds two charts, for BC formats
 
     [[nodiscard]] std::uint32_t mip_texel() const { return 1u << mips; }

@@ -106,7 +106,8 @@ struct UvOverlap {
 Result<ChartSet> make_charts(const Scene& scene, const WorldGeometry& geometry, const ChartOptions& options,
                              Context& context);
 
-// Places the charts of every lightmap instance. Errors: usage where they cannot fit the asked resolution.
+// Places the charts of every lightmap instance. Errors: usage where they cannot fit the asked resolution, and where the
+// masks are of a rule that cannot be, or the resolution is no multiple of its cells.
 // Diagnostics: "chart-clamped" (nodes with charts larger than a page, and the density that is left to them).
 Result<Atlas> make_atlas(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts,
                          const ChartOptions& options, Context& context);

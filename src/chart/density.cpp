@@ -201,7 +201,7 @@ Result<double> solve_density(const ChartSet& charts, const std::vector<ChartInst
                              BudgetOf what, SizeLimit limit, Context& context) {
     const double unit = texels_at_unit_density(charts, instances);
     if (!(unit > 0.0)) return 1.0;
-    const double target = std::max(budget, least_texels(instances));
+    const double target = std::max(budget, least_texels(instances, what, limit.rule));
     const double aim = 0.9975 * target;  // a budget is a ceiling
     // Borders only add to the area, up to the rounding of sizes: twice its density is above the answer.
     double low = 0.0, high = 2.0 * std::sqrt(target / unit), density = 0.25 * high;

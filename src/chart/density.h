@@ -55,9 +55,10 @@ enum class BudgetOf : std::uint8_t { page, baked };
 Result<double> solve_density(const ChartSet& charts, const std::vector<ChartInstance>& instances, double budget,
                              BudgetOf what, SizeLimit limit, Context& context);
 
-// Every chart as small as can be: 2 x 2 texels.
-inline double least_texels(const std::vector<ChartInstance>& instances) {
-    return 4.0 * static_cast<double>(instances.size());
+// Every chart as small as can be: 2 x 2 texels, or the whole cells of a page that those take.
+inline double least_texels(const std::vector<ChartInstance>& instances, BudgetOf what, const MaskRule& rule) {
+    const double edge = what == BudgetOf::page ? static_cast<double>(rule.cells(2)) * rule.cell() : 2.0;
+    return edge * edge * static_cast<double>(instances.size());
 }
 
 // World area over all chart instances, with the rates applied: texels at one texel per metre.

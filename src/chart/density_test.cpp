@@ -120,7 +120,23 @@ TEST(Density, ABudgetBelowTheFloorGivesTheFloor) {
     const auto density = solve_density(f.charts, instances, 10.0, BudgetOf::page, kNoLimit, context);
     ASSERT_TRUE(density.ok());
     EXPECT_EQ(size_charts(f.charts, instances, *density, kNoLimit, context)->used, 400u);
-    EXPECT_EQ(least_texels(instances), 400.0);
+    EXPECT_EQ(least_texels(instances, BudgetOf::page, {}), 400.0);
+}
+
+// What a rule makes of charts of 2 x 2 texels, by what is drawn of them.
+TEST(Density, TheFloorIsThatOfTheRule) {
+    const Fixture f(std::vector<Affine>(10, turned({1, 1, 1})));
+    Context context(1);
+    const auto instances = chart_instances(f.scene, f.charts);
+    for (const auto filter : {MaskRule::Filter::bilinear, MaskRule::Filter::bicubic})
+        for (const std::uint32_t mips : {0u, 2u})
+            for (const std::uint32_t block : {1u, 4u}) {
+                const MaskRule rule{filter, mips, block};
+                const auto sized = size_charts(f.charts, instances, 1e-6, SizeLimit{4096, 4096, rule}, context);
+                ASSERT_TRUE(sized);
+                EXPECT_EQ(least_texels(instances, BudgetOf::page, rule), static_cast<double>(sized->used)) << mips;
+                EXPECT_EQ(least_texels(instances, BudgetOf::baked, rule), static_cast<double>(sized->covered)) << mips;
+            }
 }
 
 }  // namespace
