@@ -76,6 +76,7 @@ std::uint64_t used_by(const std::vector<ChartMask>& masks) {
     return used;
 }
 
+// Throws where charts overlap or are missing: such a row must not pass for a result.
 void print_row(const std::string& set, const char* method, const std::vector<ChartMask>& masks,
                const std::vector<PackedChart>& charts, std::uint32_t width, double seconds) {
     const Check check = draw(masks, charts, width);
@@ -86,6 +87,8 @@ void print_row(const std::string& set, const char* method, const std::vector<Cha
                 static_cast<unsigned long long>(check.overlaps),
                 static_cast<unsigned long long>(check.outside + used_by(masks) - check.drawn));
     std::fflush(stdout);
+    if (check.overlaps != 0 || check.outside != 0 || check.drawn != used_by(masks))
+        throw std::runtime_error(set + ": " + method + " has charts that overlap or are missing");
 }
 
 void run_lumel(const std::string& set, const std::vector<ChartMask>& masks, const Options& options,

@@ -40,11 +40,20 @@ Status check_sizes(const std::vector<ChartMask>& masks, const Options& options) 
         const std::string size = std::to_string(m.width) + "x" + std::to_string(m.height);
         return Error{ErrorCode::usage, "chart " + std::to_string(i) + " has " + size + " texels, more than a page",
                      options.file,
-                     m.width > FreeMap::kMaxWidth || m.height > FreeMap::kMaxWidth
-                         ? "make it smaller: pages are 16384 wide at most"
-                         : "give a larger --width or --max-page"};
+                     too_high || options.width == 0 ? "give a larger --max-page" : "give a larger --width"};
     }
     return success();
+}
+
+// Before the machine is out of it.
+Status check_memory(const std::vector<ChartMask>& masks, const PackOptions& how, const Options& options) {
+    constexpr std::uint64_t kMostBytes = std::uint64_t{4} << 30;
+    const std::uint64_t bytes = page_bytes(masks, how);
+    if (bytes <= kMostBytes) return success();
+    return Error{ErrorCode::out_of_memory,
+                 "a page for these charts would take about " + std::to_string(bytes >> 20) +
+                     " MiB of memory, more than " + std::to_string(kMostBytes >> 20),
+                 options.file, "give a larger --width, or a --max-page"};
 }
 
 Figures figures_of(const PagePacking& packing, double cpu_seconds) {
@@ -93,8 +102,9 @@ Result<std::string> run(const Options& options) {
     if (options.max_page != 0 && options.width > options.max_page)
         return Error{ErrorCode::usage, "--width is larger than --max-page", {}, {}};
     LUMEL_TRY_STATUS(check_sizes(masks, options));
-    RunContext context(options.threads, options.progress);
     const PackOptions how{options.width, options.max_page, orientations_of(options.orientations)};
+    LUMEL_TRY_STATUS(check_memory(masks, how, options));
+    RunContext context(options.threads, options.progress);
     const std::clock_t start = std::clock();
     const PagePacking packing = pack_pages(masks, how, context.get());
     const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;

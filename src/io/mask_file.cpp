@@ -1,7 +1,5 @@
 #include "io/mask_file.h"
 
-#include <algorithm>
-
 #include "base/check.h"
 #include "base/try.h"
 #include "io/image_io.h"
@@ -11,16 +9,25 @@ namespace {
 
 constexpr std::uint32_t kMagic = 0x4b534d43, kVersion = 1;  // "CMSK"
 constexpr std::size_t kHeaderBytes = 16, kChartHeaderBytes = 4;
-constexpr std::uint32_t kMaxEdge = 65535;
-// Masks take up to eight times their bytes in memory, the smallest ones about twenty times; the page that they are
-// packed into, with all its free squares, up to thirty times.
+// In memory rows of a mask take up to eight times their bytes, and the smallest masks eighteen times. What packing
+// takes on top grows with the largest mask, so that is bounded on its own, and with the page: see page_bytes() in
+// pack/pack_pages.h.
 constexpr std::uint64_t kMaxFileBytes = std::uint64_t{32} << 20;
-constexpr std::uint32_t kMaxCharts = 4'000'000;
+constexpr std::uint32_t kMaxCharts = 4'000'000, kMaxEdge = 16384;
+constexpr std::uint64_t kMaxTexels = std::uint64_t{1} << 26;  // of a chart's box
 
 std::uint32_t little_endian(std::span<const std::byte> bytes) {
     std::uint32_t value = 0;
     for (std::size_t i = 0; i < bytes.size(); ++i) value |= std::to_integer<std::uint32_t>(bytes[i]) << (8 * i);
     return value;
+}
+
+Status check_size(std::uint32_t width, std::uint32_t height, const std::string& name, const std::string& where) {
+    if (width <= kMaxEdge && height <= kMaxEdge && std::uint64_t{width} * height <= kMaxTexels) return success();
+    return Error{ErrorCode::unsupported,
+                 name + " has " + std::to_string(width) + "x" + std::to_string(height) + " texels, more than " +
+                     std::to_string(kMaxEdge) + " along an edge or " + std::to_string(kMaxTexels) + " in all",
+                 where, "make it smaller, or several charts"};
 }
 
 class Decoder {
@@ -73,6 +80,7 @@ private:
         if (left() < kChartHeaderBytes) return damaged("ends before " + name);
         const std::uint32_t width = take(2), height = take(2);
         if (width == 0 || height == 0) return damaged(name + " has no width or no height");
+        LUMEL_TRY_STATUS(check_size(width, height, name, where_));
         const std::size_t row_bytes = (width + 7) / 8;
         if (left() / row_bytes < height) return damaged("ends within " + name);
         ChartMask mask(width, height);
@@ -115,7 +123,7 @@ std::vector<std::byte> encode_masks(std::span<const ChartMask> masks) {
     append(out, masks.size(), 4);
     append(out, 0, 4);
     for (const ChartMask& mask : masks) {
-        LUMEL_CHECK(mask.width <= kMaxEdge && mask.height <= kMaxEdge, mask.width, mask.height);
+        LUMEL_CHECK(mask.width < 65536 && mask.height < 65536, mask.width, mask.height);
         append(out, mask.width, 2);
         append(out, mask.height, 2);
         for (std::uint32_t y = 0; y < mask.height; ++y)
@@ -126,6 +134,16 @@ std::vector<std::byte> encode_masks(std::span<const ChartMask> masks) {
 }
 
 Status write_masks(const std::filesystem::path& path, std::span<const ChartMask> masks) {
+    const auto too_large = [&](const std::string& what) {
+        return Error{ErrorCode::unsupported, "would have more than " + what, path.string(), "make it several files"};
+    };
+    if (masks.size() > kMaxCharts) return too_large(std::to_string(kMaxCharts) + " charts");
+    std::uint64_t bytes = kHeaderBytes;
+    for (std::size_t i = 0; i < masks.size(); ++i) {
+        LUMEL_TRY_STATUS(check_size(masks[i].width, masks[i].height, "chart " + std::to_string(i), path.string()));
+        bytes += kChartHeaderBytes + std::uint64_t{(masks[i].width + 7) / 8} * masks[i].height;
+    }
+    if (bytes > kMaxFileBytes) return too_large(std::to_string(kMaxFileBytes) + " bytes");
     return write_file(path, encode_masks(masks));
 }
 

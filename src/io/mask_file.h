@@ -19,6 +19,8 @@ Result<std::vector<ChartMask>> decode_masks(std::span<const std::byte> bytes, co
 
 // Precondition: sizes below 65536.
 std::vector<std::byte> encode_masks(std::span<const ChartMask> masks);
+// Writes only what read_masks() reads: up to 32 MiB and four million charts, none of more than 16384 texels along an
+// edge or 2^26 in all.
 Status write_masks(const std::filesystem::path& path, std::span<const ChartMask> masks);
 
 }  // namespace lumel

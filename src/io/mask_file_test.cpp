@@ -55,6 +55,28 @@ TEST(MaskFile, RefusesEveryTruncationAndExtraBytes) {
     EXPECT_FALSE(decode_masks(more, "more.msk").ok());
 }
 
+// Each edge by itself could be, and all the bytes are there.
+TEST(MaskFile, RefusesChartsThatAreTooLarge) {
+    const auto fault = [](std::uint32_t width, std::uint32_t height) {
+        const std::vector<ChartMask> masks{test::rectangle_mask(width, height)};
+        const auto read = decode_masks(encode_masks(masks), "large.msk");
+        if (read.ok()) return std::string("none");
+        EXPECT_EQ(read.error().code, ErrorCode::unsupported);
+        // Nor is it written.
+        const test::TemporaryFolder folder;
+        const Status written = write_masks(folder.path() / "large.msk", masks);
+        EXPECT_FALSE(written.ok());
+        return read.error().text();
+    };
+    EXPECT_EQ(
+        fault(1, 16385),
+        "large.msk: chart 0 has 1x16385 texels, more than 16384 along an edge or 67108864 in all (make it smaller, "
+        "or several charts)");
+    EXPECT_NE(fault(16385, 1), "none");
+    EXPECT_NE(fault(8193, 8192), "none");
+    EXPECT_EQ(fault(16384, 3), "none");
+}
+
 TEST(MaskFile, NamesTheFault) {
     const auto fault = [](std::size_t at, int value) {
         std::vector<std::byte> bytes = kSmall;
