@@ -92,6 +92,7 @@ ReconstructionError measure(const Encoding& encoding, Storage storage, const Mea
     // Without light to measure by, or with less than none, every error is too large.
     const auto relative_to = [](double size, double light) { return or_infinity(light > 0.0 ? size / light : NAN); };
     std::vector<double> relative;
+    relative.reserve(sums.size());
     for (const Sums& s : sums)
         relative.push_back(relative_to(std::sqrt(s.error), std::max(s.truth, 0.0) + 0.01 * mean));
     std::ranges::sort(relative);
