@@ -1,4 +1,4 @@
-// Any bytes as blocks of every format: the decoders read nothing beyond them and give finite numbers.
+// Any bytes as blocks of every format: the decoders read nothing beyond them and give numbers.
 #include <algorithm>
 #include <cmath>
 
@@ -26,7 +26,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto in_range = [](float v) { return v >= 0.0f && v <= 1.0f; };
     for (const bool is_signed : {false, true})
         for (const std::uint16_t code : lumel::decode_bc6h_block(block, is_signed))
-            LUMEL_CHECK(std::isfinite(lumel::half_to_float(code)), code);
+            // End points of 16 bits can say -32768, which the format makes minus infinity.
+            LUMEL_CHECK(!std::isnan(lumel::half_to_float(code)) && (is_signed || code < 0x7C00), code);
     for (const float v : lumel::decode_bc1_block(half)) LUMEL_CHECK(in_range(v), v);
     for (const float v : lumel::decode_bc4_block(half)) LUMEL_CHECK(in_range(v), v);
     for (const float v : lumel::decode_bc5_block(block)) LUMEL_CHECK(in_range(v), v);
