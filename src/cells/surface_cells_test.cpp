@@ -167,7 +167,7 @@ TEST(SurfaceCells, DimCellsBounceToTheirEndBesideBrightOnes) {
     links[0] = {1, {weight, weight, weight}};
     links[1] = {0, {weight, weight, weight}};
     ASSERT_TRUE(floor.cells.solve(gathers, links, 64, floor.context).ok());
-    EXPECT_NEAR(floor.cells.irradiance(0).x, 5.0f, 0.01f);  // 1/(1 - 0.8); the last changes are 1e-4 of it
+    EXPECT_NEAR(floor.cells.irradiance(0).x, 5.0f, 0.01f);  // 1/(1 - 0.8); the last changes are 1e-5 of it
 }
 
 TEST(SurfaceCells, ACellAmongBacksStillPassesItsLightOn) {

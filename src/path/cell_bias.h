@@ -19,8 +19,8 @@ public:
 
     // NaN: not measured, or there is no light.
     [[nodiscard]] double relative() const;
-    // Of that, by how much blocks differ; NaN below two blocks. Both halves of a block start with the same rays, so
-    // that most of what is left is the noise of the paths beyond the cells.
+    // Of that, by how much blocks differ; NaN below two blocks. Both times a block is gathered its first rays are the
+    // same, so that most of what is left is the noise of the paths beyond the cells.
     [[nodiscard]] double standard_error() const;
 
 private:
