@@ -48,7 +48,8 @@ Result<std::uint64_t> parse_bytes(const std::string& text, const std::string& op
 // Light and transport options, common to bake and render.
 class LightOptions {
 public:
-    void declare(CLI::App& app);
+    // usual_samples: what the help says of --samples where it is not given.
+    void declare(CLI::App& app, const std::string& usual_samples);
     // Fills sky, sun, include, scales, samples, bounces, seed, threads.
     Status read(BakeOptions& options) const;
     // Where none of sky and sun was given, takes those of a bake; so, each by itself, include and the scales. Returns

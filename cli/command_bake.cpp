@@ -261,7 +261,7 @@ Run add_bake(CLI::App& app) {
         ->group(transport);
     app.add_option("--error", options->error,
                    "Relative error of a texel to stop at, for example 0.05; --samples bounds its paths")
-        ->check(between(1e-6, 10.0))
+        ->check(between(1e-6, 1.0))
         ->group(transport);
     app.add_option("--confidence", options->confidence, "Confidence of --error (0.95)")
         ->check(between(0.5, 0.9999))
@@ -274,7 +274,7 @@ Run add_bake(CLI::App& app) {
     app.add_flag("--two-sided", values.two_sided, "Light both sides of double-sided surfaces")->group(transport);
     app.add_option("--max-memory", options->max_memory, "Ceiling such as 4G; pages shrink to fit it")
         ->check(not_empty());
-    options->light.declare(app);
+    options->light.declare(app, "the preset's");
     declare_progress(app, options->progress);
     return [options] {
         const Status status = run(*options);

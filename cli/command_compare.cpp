@@ -84,29 +84,40 @@ nlohmann::ordered_json to_json(const ImageMetrics& m) {
                                {"block_bias_p95", number(m.block_bias_p95)},
                                {"median_relative_error", number(m.median_relative_error)},
                                {"log_psnr", number(m.log_psnr)}};
+    const auto channels = [&](const std::array<float, 4>& texel) {
+        return std::vector<float>(texel.begin(), texel.begin() + static_cast<std::ptrdiff_t>(m.channel_bias.size()));
+    };
     for (const WorstTexel& texel : m.worst)
         out["worst"].push_back({{"x", texel.x},
                                 {"y", texel.y},
                                 {"relative_squared_error", number(texel.relative_squared_error)},
-                                {"value", {texel.value[0], texel.value[1], texel.value[2]}},
-                                {"reference", {texel.reference[0], texel.reference[1], texel.reference[2]}}});
+                                {"value", channels(texel.value)},
+                                {"reference", channels(texel.reference)}});
     return out;
 }
 
+void print_channels(const std::array<float, 4>& texel, std::size_t channels) {
+    for (std::size_t c = 0; c < channels; ++c) std::printf(" %.4g", static_cast<double>(texel[c]));
+}
+
 void print(const ImageMetrics& m) {
-    std::printf("texels            %llu (%llu not finite)\n", static_cast<unsigned long long>(m.texels),
-                static_cast<unsigned long long>(m.non_finite));
+    std::printf("texels            %llu (%llu not finite), %zu channel%s\n", static_cast<unsigned long long>(m.texels),
+                static_cast<unsigned long long>(m.non_finite), m.channel_bias.size(),
+                m.channel_bias.size() == 1 ? "" : "s");
     std::printf("mean              %.6g, reference %.6g\n", m.mean, m.reference_mean);
     std::printf("nRMSE             %.6g\nrelMSE            %.6g, without the worst 0.1 %% of texels %.6g\n", m.nrmse,
                 m.relmse, m.relmse_without_worst);
     std::printf("bias              %+.6g (%+.4f %%)\nblock bias P95    %.4f %%\n", m.bias, 100.0 * m.relative_bias,
                 100.0 * m.block_bias_p95);
     std::printf("median rel. error %.4f %%\nlog-PSNR          %.2f dB\n", 100.0 * m.median_relative_error, m.log_psnr);
-    for (const WorstTexel& t : m.worst)
-        std::printf("worst (%u, %u): %.4g %.4g %.4g, reference %.4g %.4g %.4g\n", t.x, t.y,
-                    static_cast<double>(t.value[0]), static_cast<double>(t.value[1]), static_cast<double>(t.value[2]),
-                    static_cast<double>(t.reference[0]), static_cast<double>(t.reference[1]),
-                    static_cast<double>(t.reference[2]));
+    for (const WorstTexel& t : m.worst) {
+        if (t.relative_squared_error == 0.0) break;  // and of the rest, for the worst come first
+        std::printf("worst (%u, %u):", t.x, t.y);
+        print_channels(t.value, m.channel_bias.size());
+        std::printf(", reference");
+        print_channels(t.reference, m.channel_bias.size());
+        std::printf("\n");
+    }
 }
 
 }  // namespace

@@ -166,7 +166,9 @@ Result<const Encoding*> named_encoding(const std::string& name) {
 
 Status check_usage(const Options& options) {
     const auto usage = [](const char* what) { return Error{ErrorCode::usage, what, {}, {}}; };
-    if (options.encoding.empty() == !options.table) return usage("one of --encoding and --table is needed");
+    if (options.encoding.empty() && !options.table) return usage("one of --encoding and --table is needed");
+    if (options.table && !options.encoding.empty())
+        return usage("--table measures every encoding: it does not go with --encoding");
     if (options.table && !options.output.empty()) return usage("--table prints: there is nothing to write with -o");
     if (options.table && !options.format.empty()) return usage("--table prints: there is nothing to write as --format");
     if (options.max_bytes && options.encoding != kAutomatic) return usage("--max-bytes needs --encoding auto");

@@ -28,6 +28,7 @@ struct Options {
 };
 
 constexpr float kRadians = 0.01745329252f;
+constexpr std::uint32_t kUsualSamples = 64;
 
 // "eye;target;vfov_degrees", each point as x,y,z.
 Result<Camera> parse_camera(const std::string& text) {
@@ -148,7 +149,7 @@ Status run(const Options& options) {
     PictureOptions picture;
     picture.width = size.width;
     picture.height = size.height;
-    picture.samples = light.samples ? light.samples : 64;
+    picture.samples = light.samples ? light.samples : kUsualSamples;
     Image image;
     if (options.baked.empty()) {
         LUMEL_TRY(image, render_picture(transport, path, camera, picture, nullptr, context));
@@ -176,7 +177,7 @@ Run add_render(CLI::App& app) {
         ->check(not_empty());
     app.add_option("--resolution", options->resolution, "Width x height in pixels")->check(not_empty());
     app.add_option("--exposure", options->exposure, "Factor for .png; 0: automatic")->check(not_negative());
-    options->light.declare(app);
+    options->light.declare(app, std::to_string(kUsualSamples));
     declare_progress(app, options->progress);
     return [options] {
         const Status status = run(*options);

@@ -4,9 +4,23 @@
 #include <vector>
 
 #include "command.h"
+#include "suggest.h"
 
 namespace lumel::cli {
 namespace {
+
+// "; did you mean --samples?" where the first option that the command does not have resembles one that it has.
+std::string meant_option(const CLI::App& command) {
+    std::vector<std::string> known;
+    for (const CLI::Option* option : command.get_options())
+        for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+    for (const std::string& word : command.remaining()) {
+        if (!word.starts_with("--")) continue;
+        const std::string meant = closest_word(word.substr(0, word.find('=')), known);
+        return meant.empty() ? meant : "; did you mean " + meant + "?";
+    }
+    return {};
+}
 
 // What the parser did not understand, as one line like any other error.
 int usage_error(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
@@ -14,14 +28,19 @@ int usage_error(const CLI::App& app, const CLI::ParseError& error, int argc, cha
     if (!parsed.empty()) {
         std::string message = error.what();
         if (message.starts_with("The ")) message.front() = 't';  // what is not the name of an argument
-        return fail({ErrorCode::usage, std::move(message), {}, {}}, parsed.front()->get_name());
+        return fail({ErrorCode::usage, message + meant_option(*parsed.front()), {}, {}}, parsed.front()->get_name());
     }
     // The parser would only say that there is no command.
     char** const word = std::find_if(argv + 1, argv + argc, [](std::string_view a) { return !a.starts_with('-'); });
     std::string commands;
-    for (const CLI::App* command : app.get_subcommands({}))
-        commands += (commands.empty() ? "" : ", ") + command->get_name();
-    const std::string message = word != argv + argc ? "there is no command '" + std::string(*word) + "'"
+    std::vector<std::string> names;
+    for (const CLI::App* command : app.get_subcommands({})) {
+        names.push_back(command->get_name());
+        commands += (commands.empty() ? "" : ", ") + names.back();
+    }
+    const std::string meant = word != argv + argc ? closest_word(*word, names) : std::string{};
+    const std::string message = word != argv + argc ? "there is no command '" + std::string(*word) + "'" +
+                                                          (meant.empty() ? meant : "; did you mean " + meant + "?")
                                 : argc > 1 ? "there is no option '" + std::string(argv[1]) + "' without a command"
                                            : "a command is missing";
     return fail({ErrorCode::usage, message, {}, "commands: " + commands + "; see lumel --help"}, {});

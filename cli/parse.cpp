@@ -15,6 +15,8 @@ namespace lumel::cli {
 namespace {
 
 constexpr double kMaxScale = 1e6;  // of layers; that of a light in the sidecar
+// Fewer without a unit are gigabytes or megabytes that were meant.
+constexpr std::uint64_t kFewestPlainBytes = 100000;
 
 Error usage(const std::string& option, const std::string& text, const std::string& expected) {
     return {ErrorCode::usage, option + ": '" + text + "' is not " + expected, {}, {}};
@@ -145,10 +147,11 @@ Result<std::uint64_t> parse_bytes(const std::string& text, const std::string& op
     }
     if (shift < 0 || value == 0 || value > (~std::uint64_t{0} >> shift))
         return usage(option, text, "a size such as 4G or 512M");
+    if (shift == 0 && value < kFewestPlainBytes) return usage(option, text, "a size with its unit, such as 4G or 512M");
     return value << shift;
 }
 
-void LightOptions::declare(CLI::App& app) {
+void LightOptions::declare(CLI::App& app, const std::string& usual_samples) {
     const std::string group = "Light";
     const auto of_sky_and_sun = [&](CLI::Option* option) {
         sky_and_sun_.push_back(option->group(group));
@@ -186,8 +189,9 @@ void LightOptions::declare(CLI::App& app) {
                           ->group(group);
 
     const std::string transport = "Transport";
-    app.add_option("--samples", values_.samples, "Paths per texel or pixel (0: the preset's)")
-        ->check(CLI::Range(0u, 1u << 24))
+    app.add_option("--samples", values_.samples, "Paths per texel or pixel")
+        ->default_str(usual_samples)
+        ->check(CLI::Range(1u, 1u << 24))
         ->group(transport);
     app.add_option("--bounces", values_.bounces, "Longest path; 0 = direct light only")
         ->check(CLI::Range(0u, 1024u))

@@ -93,7 +93,8 @@ Result<std::uint32_t> samples_within_time(const TimePlan& plan, const BakeOption
     if (seconds_for(chosen) > left)
         context.diagnostics.add("time-too-short",
                                 "--time is too short for " + std::to_string(chosen) +
-                                    " samples per texel, the fewest that are taken: lower --texels-per-metre",
+                                    " samples per texel, the fewest that are taken: lower " +
+                                    (options.resolution_width > 0 ? "--resolution" : "--texels-per-metre"),
                                 transport.scene.source);
     for (std::uint32_t power = kFewestTimedSamples; power <= path.samples; power *= 2)
         for (const std::uint32_t n : {power, power + power / 2})

@@ -8,6 +8,7 @@
 
 #include "base/try.h"
 #include "io/data_uri.h"
+#include "io/image_codecs.h"
 #include "io/image_io.h"
 #include "io/page_files.h"
 
@@ -53,6 +54,15 @@ std::uint32_t read_u32(std::span<const std::byte> bytes, std::size_t at) {
     std::uint32_t value = 0;
     std::memcpy(&value, bytes.data() + at, 4);
     return value;
+}
+
+// What was meant can often be told from what it is.
+Error not_a_scene(std::span<const std::byte> bytes, const std::string& where) {
+    const ImageFormat format = image_format(bytes);
+    if (format == ImageFormat::hdr || format == ImageFormat::exr)
+        return unsupported(where, "is a picture, not a scene", "a sky map is given with --sky, after the scene");
+    if (format != ImageFormat::unknown) return unsupported(where, "is a picture, not a scene", "give a glTF 2.0 scene");
+    return unsupported(where, "is neither a .glb nor a .gltf", "give a glTF 2.0 scene");
 }
 
 struct Chunks {
@@ -239,7 +249,7 @@ Result<GltfDocumentPtr> read_document(std::vector<std::byte> bytes, const std::f
     Result<Json> root = parse_json(chunks.json, where);
     if (!root.ok()) {
         const bool json_like = chunks.json.find('{') != std::string_view::npos;
-        return json_like ? root.error() : unsupported(where, "is neither a .glb nor a .gltf", "give a glTF 2.0 scene");
+        return json_like ? root.error() : not_a_scene(bytes, where);
     }
     document->root = std::move(root).value();
     LUMEL_TRY_STATUS(DocumentReader(*document, chunks).read());

@@ -15,6 +15,7 @@ sed 's/"intensity":100/"intensity":3e38/' ok.gltf >bright.gltf
 cp ok.gltf side.gltf
 echo '{ "sky": ' >side.lumel.json
 echo hello >text.glb
+printf '#?RADIANCE\n' >sky.hdr
 echo '{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"name":"nothing"}]}' >empty.gltf
 sed 's/"name":"floor"},/"name":"floor","extras":{"lightmap":false}},/' ok.gltf >probe.gltf
 # textured FILE: the floor with this file as its texture
@@ -83,6 +84,9 @@ usage "'foo'" foo --json
 usage "'--frobnicate'" --frobnicate
 usage --frobnicate bake ok.gltf -o x --frobnicate
 usage 'lumel bake --help' bake ok.gltf -o x --frobnicate
+usage 'did you mean --samples?' bake ok.gltf -o x --sample 5
+usage 'did you mean --sky?' render ok.gltf -o x.png --skye=1,1,1
+usage 'did you mean bake?' bak ok.gltf
 usage SCENE bake
 usage --output bake ok.gltf
 usage ultra bake ok.gltf -o x --preset ultra
@@ -101,7 +105,7 @@ done
 for pair in --preset=ultra --samples=many --samples=-4 --sun-direction=1,2 --sun-direction=0,0,0 --include=light --include= \
     --sky=1,1 --sky=nan,1,1 --sky-intensity=nan --sky-intensity=inf --ao-distance=nan --ao-distance=inf --sun-direction=inf,0,0 \
     --texels-per-metre=inf --direct-scale=nan --indirect-scale=inf --texels-per-metre=nan --sky-rotation=nan --direct-scale=-1 \
-    --max-memory=abc --resolution=0x5 --resolution=99999x99999 --threads=5000; do
+    --max-memory=abc --max-memory=5 --samples=0 --resolution=0x5 --resolution=99999x99999 --threads=5000; do
     expect 2 "${pair%%=*}" bake ok.gltf -o x --resolution 32x32 "$pair"
 done
 # Nothing is no value: not "as if it were not given".
@@ -130,6 +134,7 @@ for pair in --error=0.1 --confidence=0.9; do
     expect 0 '' bake ok.gltf -o x "${quick[@]}" --stop flux "$pair"
 done
 expect 2 '--confidence needs --error' bake ok.gltf -o x "${quick[@]}" --confidence 0.9
+expect 2 --error bake ok.gltf -o x "${quick[@]}" --error 5
 expect 2 '--stop fixed' bake ok.gltf -o x "${quick[@]}" --stop fixed --error 0.1
 expect 2 '--time does not go with --error' bake ok.gltf -o x "${quick[@]}" --time 5 --error 0.1
 for value in 0 nan -1; do expect 2 --time bake ok.gltf -o x "${quick[@]}" --time "$value"; done
@@ -150,6 +155,7 @@ expect 1 gone/manifest.json render ok.gltf -o v.png --baked gone
 expect 1 'no such file' bake gone.glb -o out "${quick[@]}"
 expect 1 'is a folder' bake . -o out "${quick[@]}"
 expect 1 'neither a .glb nor a .gltf' bake text.glb -o out "${quick[@]}"
+expect 1 'sky.hdr: is a picture, not a scene (a sky map is given with --sky' bake sky.hdr -o out "${quick[@]}"
 expect 1 "mesh 0 'floor', primitive 0, vertex 0" bake nan.gltf -o out "${quick[@]}"
 expect 1 'index 5 is 9' bake index.gltf -o out "${quick[@]}"
 expect 1 'node 0' bake mesh.gltf -o out "${quick[@]}"

@@ -25,7 +25,7 @@ expect 2 'no encoding fits' encode lit --encoding auto --max-bytes 2 --table-tex
 
 expect 2 "there is no 'hhd'" encode lit --encoding hhd
 expect 2 'one of --encoding and --table' encode lit
-expect 2 'one of --encoding and --table' encode lit --table --encoding l2
+expect 2 'does not go with --encoding' encode lit --table --encoding l2
 expect 2 '--max-bytes needs' encode lit --encoding l2 --max-bytes 4
 expect 2 '--table prints' encode lit --table -o elsewhere
 expect 2 '--table prints' encode lit --table --format exr
