@@ -20,10 +20,14 @@ Transport transport_through(const BenchScene& bench, const LightSet& lights) {
     return {bench.scene, bench.geometry, bench.surfaces, lights, *bench.tracer};
 }
 
-RadianceSums gather(const GatherJob& job, const Transport& transport, bool guided) {
+// What texels learn from their first samples.
+enum class Learned : std::uint8_t { nothing, directions, lights, both };
+
+RadianceSums gather(const GatherJob& job, const Transport& transport, Learned learned) {
     const BenchScene& b = job.bench;
     PathOptions path = job.path;
-    path.guided = guided;
+    path.guided = learned == Learned::directions || learned == Learned::both;
+    path.lights_learned = learned == Learned::lights || learned == Learned::both;
     RadianceSums sums =
         need(gather_page(b.texels, b.charts, b.atlas, transport, path, job.range.first, job.range.count, job.context));
     need(pool_variance(b.texels, sums, job.context));
@@ -34,17 +38,17 @@ template <Choice choice>
 RadianceSums brute_force(const GatherJob& job) {
     const BenchScene& b = job.bench;
     const LightSet lights(b.scene, b.geometry, b.surfaces, choice);
-    return gather(job, transport_through(b, lights), false);
+    return gather(job, transport_through(b, lights), Learned::nothing);
 }
 
-template <bool guided>
+template <Learned learned>
 RadianceSums with_cells(const GatherJob& job) {
     const BenchScene& b = job.bench;
     const LightSet lights(b.scene, b.geometry, b.surfaces, Choice::tree);
     Transport transport = transport_through(b, lights);
     const SurfaceCells cells = need(make_lit_cells(b.charts, b.atlas, transport, job.path, job.context));
     transport.cells = &cells;
-    return gather(job, transport, guided);
+    return gather(job, transport, learned);
 }
 
 RadianceSums flux_with(const GatherJob& job, const FluxChoices& choices, Choice choice) {
@@ -86,8 +90,10 @@ constexpr Method kMethods[] = {
     {"flux-all", "the same, all lights at each hit", true, flux_all},
     {"power", "Lumel's brute force, local lights chosen by power", true, brute_force<Choice::power>},
     {"tree", "Lumel's brute force, local lights chosen by the light tree", true, brute_force<Choice::tree>},
-    {"cells", "the same, paths end at surface cells", true, with_cells<false>},
-    {"guided", "Lumel's default: the same, first rays are guided", true, with_cells<true>},
+    {"cells", "the same, paths end at surface cells", true, with_cells<Learned::nothing>},
+    {"guided", "cells, and first rays are guided", true, with_cells<Learned::directions>},
+    {"lights", "cells, and local lights are chosen by what texels nearby have seen", true, with_cells<Learned::lights>},
+    {"default", "Lumel's default: cells, guided first rays and learned lights", true, with_cells<Learned::both>},
     {"flux-as-power", "flux with all choices set to those of power: is it a fair one?", false,
      flux_as_lumel<Choice::power>},
     {"flux-as-tree", "flux with all choices set to those of tree", false, flux_as_lumel<Choice::tree>},

@@ -252,7 +252,7 @@ Run add_bake(CLI::App& app) {
         ->check(CLI::IsMember({"auto", "cells", "paths"}))
         ->group(transport);
     app.add_option("--guide", options->guide,
-                   "auto (with cells: paths follow the light that nearby texels have seen) or off")
+                   "auto (with cells: rays and the choice of lamps follow what nearby texels have seen) or off")
         ->check(CLI::IsMember({"auto", "off"}))
         ->group(transport);
     app.add_option("--time", options->time,

@@ -342,7 +342,7 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
         to_cells.samples = cell_samples;
         LUMEL_TRY(cells, make_lit_cells(charts, atlas, transport, to_cells, context));
         transport.cells = &*cells;
-        path.guided = options.guide;
+        path.guided = path.lights_learned = options.guide;
         report.cells = cells->size();
         report.trace_wall_seconds += timer.seconds();
     }

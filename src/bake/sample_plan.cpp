@@ -70,7 +70,7 @@ Result<std::uint32_t> samples_within_time(const TimePlan& plan, const BakeOption
         cost = {static_cast<double>(count), texels_per_cell(plan.atlas, kFewestTimedSamples),
                 trial.seconds() / static_cast<double>(count * links_per_cell(count))};
         through.cells = &*cells;
-        trial_path.guided = options.guide;
+        trial_path.guided = trial_path.lights_learned = options.guide;
     }
     // Blocks from all over the page.
     trial_path.samples = kTrialSamples;

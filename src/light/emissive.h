@@ -9,11 +9,13 @@
 
 namespace lumel {
 
-// Cheap to make: a view of one triangle.
+// A view of one triangle.
 class EmissiveTriangle {
 public:
     EmissiveTriangle(const WorldGeometry& geometry, const SurfaceReader& surfaces, std::uint32_t triangle)
-        : geometry_(geometry), surfaces_(surfaces), triangle_(triangle) {}
+        : geometry_(&geometry), surfaces_(surfaces), triangle_(triangle), area_(geometry.area(triangle)) {}
+
+    [[nodiscard]] std::uint32_t triangle() const { return triangle_; }
 
     // Estimated from the emission texture at fixed points; never zero for a triangle with an area whose material emits.
     [[nodiscard]] double power(const Scene& scene) const;
@@ -23,11 +25,12 @@ public:
     [[nodiscard]] LightHit hit(float b1, float b2, Vec3 direction, float distance, bool back_face) const;
 
 private:
-    [[nodiscard]] bool double_sided() const { return (geometry_.triangles[triangle_].flags & kDoubleSided) != 0; }
+    [[nodiscard]] bool double_sided() const { return (geometry_->triangles[triangle_].flags & kDoubleSided) != 0; }
 
-    const WorldGeometry& geometry_;
-    const SurfaceReader& surfaces_;
+    const WorldGeometry* geometry_;
+    SurfaceReader surfaces_;
     std::uint32_t triangle_;
+    float area_;
 };
 
 // Emits and takes part in light transport.

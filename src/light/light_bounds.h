@@ -8,10 +8,14 @@
 
 namespace lumel {
 
+struct LightTable;
+
 // Where light is gathered.
 struct Receiver {
     Vec3 position;
     Vec3 normal;  // of the hemisphere that light comes from
+    // How the local lights are chosen there, of light that has not bounced; null: by the tree.
+    const LightTable* table = nullptr;
 };
 
 // Where a light is and where it shines; of a group of lights, a bound.

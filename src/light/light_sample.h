@@ -17,6 +17,7 @@ struct LightSample {
     Vec3 weight{};     // radiance / pdf; for delta lights the irradiance on a facing plane / selection probability
     float pdf = 0.0f;  // per solid angle, selection included; 0 = delta light, cannot be hit by chance
     std::uint32_t triangle = kNone;  // the emissive triangle sampled: shadow rays must not count it as an occluder
+    std::uint32_t group = kNone;     // of the local lights, where a table chose it; also where there is no sample
 };
 
 // Light met by a ray that was sampled for another reason, and the density with which the sampling above would have

@@ -6,12 +6,15 @@
 
 #include "base/check.h"
 #include "light/emissive.h"
+#include "light/light_table.h"
 #include "math/constants.h"
 #include "math/discrete.h"
 #include "math/trig.h"
 
 namespace lumel {
 namespace {
+
+constexpr std::size_t kMostGroups = 64;  // of the local lights: as many as one learns of from a few hundred samples
 
 bool emits(const Light& light) { return light.bake != LightBake::none && max_component(light.intensity) > 0.0f; }
 
@@ -31,10 +34,17 @@ LightHit scaled(LightHit hit, Vec3 scale) {
 }
 
 // As one of several lights, chosen with the given probability.
-LightSample selected(LightSample sample, float probability) {
+LightSample selected(LightSample sample, float probability, std::uint32_t group) {
     sample.weight = sample.weight / probability;
     sample.pdf *= probability;
+    sample.group = group;
     return sample;
+}
+
+LightSample no_sample(std::uint32_t group) {
+    LightSample none;
+    none.group = group;
+    return none;
 }
 
 }  // namespace
@@ -92,12 +102,12 @@ void LightSet::add_emissive_triangles() {
         if (!is_emitter(geometry_->triangles[triangle])) continue;
         // Areas that single precision cannot hold are left to the rays that hit them.
         const float area = geometry_->area(triangle);
-        if (area > 0.0f && std::isfinite(area)) triangles_.push_back(triangle);
+        if (area > 0.0f && std::isfinite(area)) triangles_.emplace_back(*geometry_, surfaces_, triangle);
     }
     if (triangles_.empty()) return;
     local_of_triangle_.assign(geometry_->triangle_count(), kNone);
     for (std::size_t i = 0; i < triangles_.size(); ++i)
-        local_of_triangle_[triangles_[i]] = static_cast<std::uint32_t>(shapes_.size() + i);
+        local_of_triangle_[triangles_[i].triangle()] = static_cast<std::uint32_t>(shapes_.size() + i);
 }
 
 void LightSet::share_by_power() {
@@ -105,8 +115,7 @@ void LightSet::share_by_power() {
     powers.reserve(shapes_.size() + triangles_.size());
     for (const Local& local : shapes_)
         powers.push_back(std::visit([](const auto& shape) { return shape.power(); }, local.shape));
-    for (const std::uint32_t triangle : triangles_)
-        powers.push_back(EmissiveTriangle(*geometry_, surfaces_, triangle).power(*scene_));
+    for (const EmissiveTriangle& triangle : triangles_) powers.push_back(triangle.power(*scene_));
     LUMEL_CHECK(shapes_.size() < kUnits / 2, shapes_.size());
     local_ends_.resize(powers.size());
     // Lights that no ray can hit must be sampled. A triangle too dim for a share is found by the rays that hit it.
@@ -118,8 +127,7 @@ void LightSet::build_trees() {
     bounds.reserve(shapes_.size() + triangles_.size());
     for (const Local& local : shapes_)
         bounds.push_back(std::visit([](const auto& shape) { return shape.bounds(); }, local.shape));
-    for (const std::uint32_t triangle : triangles_)
-        bounds.push_back(EmissiveTriangle(*geometry_, surfaces_, triangle).bounds(*scene_));
+    for (const EmissiveTriangle& triangle : triangles_) bounds.push_back(triangle.bounds(*scene_));
     // What the artist's controls switch off or dim is not worth its full share of samples.
     const bool one = std::ranges::all_of(shapes_, [&](const Local& local) {
         return artist_scale(local.light, false) == artist_scale(local.light, true);
@@ -131,20 +139,33 @@ void LightSet::build_trees() {
             scaled_bounds[i].intensity *= double{strength(artist_scale(shapes_[i].light, bounced))};
         trees_.emplace_back(scaled_bounds);
     }
+    groups_ = trees_[0].groups(kMostGroups);
+    if (groups_.size() < 2) groups_.clear();
+    group_of_local_ = trees_[0].group_of_lights(groups_);
 }
 
 LightSet::Chosen LightSet::choose_local(const Receiver& receiver, float u, bool bounced) const {
     if (choice_ == Choice::power) {
         const lumel::Choice chosen = choose(local_ends_, u);
-        return {static_cast<std::uint32_t>(chosen.index), probability(chosen.units)};
+        return {static_cast<std::uint32_t>(chosen.index), probability(chosen.units), kNone};
+    }
+    static_assert(LightTree::kNoLight == kNone);
+    if (receiver.table && !bounced) {
+        const lumel::Choice group = choose(receiver.table->ends, u);
+        const std::uint32_t unit = unit_of(u) - receiver.table->begin(group.index);
+        const LightTree::Chosen chosen = trees_[0].choose_in(groups_[group.index], unit, group.units, receiver);
+        return {chosen.light, probability(chosen.units), static_cast<std::uint32_t>(group.index)};
     }
     const LightTree::Chosen chosen = tree(bounced).choose(receiver, u);
-    return {chosen.light == LightTree::kNoLight ? kNone : chosen.light, probability(chosen.units)};
+    return {chosen.light, probability(chosen.units), kNone};
 }
 
 float LightSet::probability_of(const Receiver& receiver, std::uint32_t local, bool bounced) const {
-    return probability(choice_ == Choice::power ? units_of(local_ends_, local)
-                                                : tree(bounced).units_of(receiver, local));
+    if (choice_ == Choice::power) return probability(units_of(local_ends_, local));
+    if (!receiver.table || bounced) return probability(tree(bounced).units_of(receiver, local));
+    const std::uint32_t group = group_of_local_[local];
+    if (group == kNone) return 0.0f;
+    return probability(trees_[0].units_in(groups_[group], receiver.table->units(group), receiver, local));
 }
 
 bool LightSet::empty() const { return suns_.empty() && !has_sky_ && !has_local(); }
@@ -191,18 +212,15 @@ LightHit LightSet::sky(Vec3 direction) const {
 
 LightSample LightSet::sample_local(const Receiver& receiver, float u_select, Vec2 u, bool bounced) const {
     if (!has_local()) return {};
-    const auto [index, chance] = choose_local(receiver, u_select, bounced);
-    if (index == kNone) return {};
+    const auto [index, chance, group] = choose_local(receiver, u_select, bounced);
+    if (index == kNone) return no_sample(group);
     const Vec3 point = receiver.position;
-    if (index >= shapes_.size()) {
-        const std::uint32_t triangle = triangles_[index - shapes_.size()];
-        return selected(EmissiveTriangle(*geometry_, surfaces_, triangle).sample(point, u), chance);
-    }
+    if (index >= shapes_.size()) return selected(triangles_[index - shapes_.size()].sample(point, u), chance, group);
     const Local& local = shapes_[index];
     const Vec3 scale = artist_scale(local.light, bounced);
-    if (scale == Vec3{}) return {};
+    if (scale == Vec3{}) return no_sample(group);
     const LightSample sample = std::visit([&](const auto& shape) { return shape.sample(point, u); }, local.shape);
-    return scaled(selected(sample, chance), scale);
+    return scaled(selected(sample, chance, group), scale);
 }
 
 LightHit LightSet::intersect_shape(std::uint32_t index, const Receiver& receiver, Vec3 direction, bool bounced) const {
@@ -216,9 +234,14 @@ LightHit LightSet::intersect_shape(std::uint32_t index, const Receiver& receiver
 LightHit LightSet::emissive(const Receiver& receiver, std::uint32_t triangle, float b1, float b2, Vec3 direction,
                             float distance, bool back_face, bool bounced) const {
     if (!is_emitter(geometry_->triangles[triangle])) return {};
-    LightHit hit = EmissiveTriangle(*geometry_, surfaces_, triangle).hit(b1, b2, direction, distance, back_face);
     const std::uint32_t local = local_of_triangle_.empty() ? kNone : local_of_triangle_[triangle];
-    hit.pdf *= local == kNone ? 0.0f : probability_of(receiver, local, bounced);
+    if (local == kNone) {  // left to the rays that hit it
+        LightHit hit = EmissiveTriangle(*geometry_, surfaces_, triangle).hit(b1, b2, direction, distance, back_face);
+        hit.pdf = 0.0f;
+        return hit;
+    }
+    LightHit hit = triangles_[local - shapes_.size()].hit(b1, b2, direction, distance, back_face);
+    if (hit.pdf > 0.0f) hit.pdf *= probability_of(receiver, local, bounced);
     return hit;
 }
 

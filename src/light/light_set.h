@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "light/disc.h"
+#include "light/emissive.h"
 #include "light/light_bounds.h"
 #include "light/light_sample.h"
 #include "light/light_tree.h"
@@ -52,6 +53,12 @@ public:
 
     [[nodiscard]] LightSample sample_sun(std::size_t sun, Vec2 u, bool bounced) const;
     [[nodiscard]] LightSample sample_sky(Vec2 u) const;
+    // Parts of the local lights that a LightTable says how often to choose, of light that has not bounced; none where
+    // there is nothing to choose, or no tree.
+    [[nodiscard]] std::span<const LightTree::Subtree> groups() const { return groups_; }
+    [[nodiscard]] double importance_of(std::size_t group, const Receiver& receiver) const {
+        return trees_[0].importance_of(groups_[group], receiver);
+    }
     // u_select picks the light, u the point on it.
     [[nodiscard]] LightSample sample_local(const Receiver& receiver, float u_select, Vec2 u, bool bounced) const;
 
@@ -93,6 +100,7 @@ private:
     struct Chosen {
         std::uint32_t local;  // kNone: none
         float probability;
+        std::uint32_t group;  // LightSample::group
     };
     [[nodiscard]] Chosen choose_local(const Receiver& receiver, float u, bool bounced) const;
     [[nodiscard]] float probability_of(const Receiver& receiver, std::uint32_t local, bool bounced) const;
@@ -113,9 +121,11 @@ private:
     std::vector<Sun> suns_;
     // Local lights have one numbering: first `shapes_`, then `triangles_`.
     std::vector<Local> shapes_;
-    std::vector<std::uint32_t> triangles_;
+    std::vector<EmissiveTriangle> triangles_;
     Choice choice_;
-    std::vector<LightTree> trees_;                  // for Choice::tree; one more where bounced light is another
+    std::vector<LightTree> trees_;            // for Choice::tree; one more where bounced light is another
+    std::vector<LightTree::Subtree> groups_;  // of trees_[0]
+    std::vector<std::uint32_t> group_of_local_;
     std::vector<std::uint32_t> local_ends_;         // for Choice::power: math/discrete.h
     std::vector<std::uint32_t> local_of_triangle_;  // per world triangle the number, or kNone; empty: none emits
     std::vector<std::uint32_t> hittable_;           // into shapes_

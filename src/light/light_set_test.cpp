@@ -5,6 +5,8 @@
 
 #include <memory>
 
+#include "light/light_table.h"
+#include "math/discrete.h"
 #include "support/closed_forms.h"
 #include "support/light_checks.h"
 #include "support/sky_maps.h"
@@ -51,12 +53,13 @@ Light sun_light(float diameter) {
     return light;
 }
 
-test::Moments local_irradiance(const LightSet& lights, Vec3 point, Vec3 normal, bool bounced, int count = 400000) {
+test::Moments local_irradiance(const LightSet& lights, Vec3 point, Vec3 normal, bool bounced, int count = 400000,
+                               const LightTable* table = nullptr) {
     test::Random random(1);
     test::Moments moments;
     for (int i = 0; i < count; ++i) {
         const float u = random.unit();
-        const LightSample s = lights.sample_local({point, normal}, u, random.pair(), bounced);
+        const LightSample s = lights.sample_local({point, normal, table}, u, random.pair(), bounced);
         moments.add(s.distance > 0.0f ? double{s.weight.y} * std::max(0.0f, dot(s.direction, normal)) : 0.0);
     }
     return moments;
@@ -125,52 +128,72 @@ double exact_everything(const Scene& scene, Vec3 p) {
     return sum;
 }
 
+// Group g gets g + 1 shares, whatever it can bring.
+LightTable lopsided_table(const LightSet& lights) {
+    const auto groups = static_cast<std::uint32_t>(lights.groups().size());
+    EXPECT_GE(groups, 5u);
+    LightTable table;
+    for (std::uint32_t g = 1; g <= groups; ++g)
+        table.ends.push_back(static_cast<std::uint32_t>(std::uint64_t{kUnits} * g * (g + 1) / (groups * (groups + 1))));
+    return table;
+}
+
 TEST(LightSet, ChoosesAmongAllKindsWithoutBias) {
     test::WorldBuilder builder;
     add_everything(builder);
     const Fixture f(builder);
-    for (const Vec3 point : {Vec3{0, 0, 0}, Vec3{0.4f, 0.2f, 0.9f}})
-        EXPECT_TRUE(test::mean_agrees(local_irradiance(*f.lights, point, kUp, false),
-                                      exact_everything(f.world.scene, point), 1e-4, 2));
+    const LightTable table = lopsided_table(*f.lights);
+    for (const LightTable* choice : {static_cast<const LightTable*>(nullptr), &table})
+        for (const Vec3 point : {Vec3{0, 0, 0}, Vec3{0.4f, 0.2f, 0.9f}})
+            EXPECT_TRUE(test::mean_agrees(local_irradiance(*f.lights, point, kUp, false, 400000, choice),
+                                          exact_everything(f.world.scene, point), 1e-4, 4));
 }
 
 // Nearest hit of a ray with the emissive quad of add_everything and all shapes along it.
 template <class Add>
-void meet_everything(const Fixture& f, Vec3 origin, Vec3 direction, Add&& add) {
-    f.lights->shapes_along({origin, kUp}, direction, kInfiniteDistance, false, add);
+void meet_everything(const Fixture& f, const Receiver& receiver, Vec3 direction, Add&& add) {
+    const Vec3 origin = receiver.position;
+    f.lights->shapes_along(receiver, direction, kInfiniteDistance, false, add);
     for (std::uint32_t t = 0; t < f.world.geometry.triangle_count(); ++t) {
         const auto [a, b, c] = f.world.geometry.corners(t);
         const Vec3 e1 = b - a, e2 = c - a, p = cross(direction, e2), s = origin - a, q = cross(s, e1);
         const float det = dot(e1, p), b1 = dot(s, p) / det, b2 = dot(direction, q) / det, distance = dot(e2, q) / det;
         if (!(b1 >= 0) || !(b2 >= 0) || b1 + b2 > 1 || distance <= 0) continue;
         const bool back = dot(direction, f.world.geometry.geometric_normal(t)) > 0;
-        add(f.lights->emissive({origin, kUp}, t, b1, b2, direction, distance, back, false));
+        add(f.lights->emissive(receiver, t, b1, b2, direction, distance, back, false));
     }
 }
 
 // Multiple importance sampling over the whole set: right only if every hit's density includes the choice of its light.
-TEST(LightSet, DensitiesOfHitsAreThoseOfTheSamples) {
-    test::WorldBuilder builder;
-    add_everything(builder);
-    const Fixture f(builder);
-    const Vec3 point{0.1f, 0.1f, 0.2f};
+test::Moments by_samples_and_hits(const Fixture& f, const Receiver& receiver) {
     const Frame frame(kUp);
     test::Random random(5);
     test::Moments moments;
     for (int i = 0; i < 400000; ++i) {
         double sum = 0;
         const float u = random.unit();
-        const LightSample s = f.lights->sample_local({point, kUp}, u, random.pair(), false);
+        const LightSample s = f.lights->sample_local(receiver, u, random.pair(), false);
         const double cosine = s.direction.y;
         if (s.distance > 0.0f && cosine > 0)
             sum += s.weight.y * cosine * (s.pdf > 0 ? s.pdf / (s.pdf + cosine * kInvPi) : 1.0);
         const Vec3 local = CosineHemisphere::sample(random.pair());
-        meet_everything(f, point, frame.to_world(local), [&](const LightHit& hit) {
+        meet_everything(f, receiver, frame.to_world(local), [&](const LightHit& hit) {
             sum += hit.radiance.y * local.z / (double{hit.pdf} + CosineHemisphere::pdf(local.z));
         });
         moments.add(sum);
     }
-    EXPECT_TRUE(test::mean_agrees(moments, exact_everything(f.world.scene, point), 1e-4));
+    return moments;
+}
+
+TEST(LightSet, DensitiesOfHitsAreThoseOfTheSamples) {
+    test::WorldBuilder builder;
+    add_everything(builder);
+    const Fixture f(builder);
+    const Vec3 point{0.1f, 0.1f, 0.2f};
+    const LightTable table = lopsided_table(*f.lights);
+    for (const Receiver& receiver : {Receiver{point, kUp, nullptr}, Receiver{point, kUp, &table}})
+        EXPECT_TRUE(
+            test::mean_agrees(by_samples_and_hits(f, receiver), exact_everything(f.world.scene, point), 1e-4, 2));
 }
 
 TEST(LightSet, EmissiveSamplesNameTheirTriangle) {

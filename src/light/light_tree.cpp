@@ -26,52 +26,58 @@ Angle minus(Angle a, Angle b) {
     return {a.cosine * b.cosine + a.sine * b.sine, std::max(0.0f, a.sine * b.cosine - a.cosine * b.sine)};
 }
 
-// What the box hides of the sky, at most: half angle of its bounding sphere.
-Angle half_angle(float radius_squared, float distance_squared) {
-    if (distance_squared <= radius_squared) return {-1.0f, 0.0f};
-    const float sine_squared = radius_squared / distance_squared;
-    return {safe_sqrt(1.0f - sine_squared), safe_sqrt(sine_squared)};
+float distance_to_box(Vec3 low, Vec3 high, Vec3 p) {
+    const auto outside = [](float from, float to, float x) { return std::max({from - x, 0.0f, x - to}); };
+    return length(Vec3{outside(low.x, high.x, p.x), outside(low.y, high.y, p.y), outside(low.z, high.z, p.z)});
 }
 
-float distance_to_box(const LightBounds& b, Vec3 p) {
-    const auto outside = [](float low, float high, float x) { return std::max({low - x, 0.0f, x - high}); };
-    return length(
-        Vec3{outside(b.low.x, b.high.x, p.x), outside(b.low.y, b.high.y, p.y), outside(b.low.z, b.high.z, p.z)});
-}
-
-// Of the surface's cosine: light along the surface counts in radiance, if not in irradiance.
-constexpr float kGrazing = 0.25f;
+constexpr float kHuge = 1e36f;  // squares of lengths that single precision cannot hold
 
 }  // namespace
 
-double importance(const LightBounds& b, const Receiver& receiver) {
-    if (!(b.intensity > 0.0)) return 0.0;
-    if (b.reach < std::numeric_limits<float>::infinity() && distance_to_box(b, receiver.position) > b.reach) return 0.0;
+PreparedBounds::PreparedBounds(const LightBounds& b)
+    : low_(b.low),
+      high_(b.high),
+      axis_(b.axis),
+      cos_facing_(b.cos_facing),
+      sin_facing_(sine_of(b.cos_facing)),
+      cos_emission_(b.cos_emission),
+      reach_(b.reach),
+      intensity_(b.intensity),
+      both_sides_(b.both_sides) {
     const Vec3 half = (b.high - b.low) * 0.5f;
-    const Vec3 to_light = b.low + half - receiver.position;
-    constexpr float kHuge = 1e36f;  // squares of lengths that single precision cannot hold
-    const float radius_squared = std::min(dot(half, half), kHuge);
-    const float distance_squared = std::min(dot(to_light, to_light), kHuge);
-    const Angle box = half_angle(radius_squared, distance_squared);
+    centre_ = b.low + half;
+    radius_squared_ = std::min(dot(half, half), kHuge);
+}
+
+double PreparedBounds::importance(const Receiver& receiver) const {
+    if (!(intensity_ > 0.0)) return 0.0;
+    if (reach_ < std::numeric_limits<float>::infinity() && distance_to_box(low_, high_, receiver.position) > reach_)
+        return 0.0;
+    const Vec3 to_light = centre_ - receiver.position;
+    const float distance_squared = std::clamp(dot(to_light, to_light), std::numeric_limits<float>::min(), kHuge);
     float share = 1.0f;
-    if (box.cosine > -1.0f) {
-        const Vec3 direction = to_light * (1.0f / std::sqrt(distance_squared));
+    if (distance_squared > radius_squared_) {  // else the receiver is within the box, or nearly
+        const float inverse_square = 1.0f / distance_squared;
+        const Vec3 direction = to_light * std::sqrt(inverse_square);
+        // What the box hides of the sky, at most: half angle of its bounding sphere.
+        const float sine_squared = radius_squared_ * inverse_square;
+        const Angle box{safe_sqrt(1.0f - sine_squared), std::sqrt(sine_squared)};
         const float arriving = dot(direction, receiver.normal);
         const float cosine = minus({arriving, sine_of(arriving)}, box).cosine;
         if (cosine <= 0.0f) return 0.0;
         share = kGrazing + (1.0f - kGrazing) * cosine;
-        if (b.cos_facing > -1.0f) {
-            float leaving = -dot(direction, b.axis);
-            if (b.both_sides) leaving = std::fabs(leaving);
-            const Angle from_cone = minus({leaving, sine_of(leaving)}, {b.cos_facing, sine_of(b.cos_facing)});
+        if (cos_facing_ > -1.0f) {
+            float leaving = -dot(direction, axis_);
+            if (both_sides_) leaving = std::fabs(leaving);
+            const Angle from_cone = minus({leaving, sine_of(leaving)}, {cos_facing_, sin_facing_});
             const float emission = minus(from_cone, box).cosine;
-            if (emission <= b.cos_emission) return 0.0;
+            if (emission <= cos_emission_) return 0.0;
             share *= emission;
         }
     }
     // Within its own size a light is not nearer than that.
-    const float least = std::numeric_limits<float>::min();
-    return b.intensity * double{share} / double{std::max({distance_squared, radius_squared, least})};
+    return intensity_ * double{share} / double{std::max(distance_squared, radius_squared_)};
 }
 
 namespace {
@@ -218,7 +224,7 @@ private:
         tree_.nodes_.emplace_back();
         if (end - begin == 1) {
             const std::uint32_t light = order_[begin];
-            tree_.nodes_[index].bounds = lights_[light];
+            tree_.nodes_[index].bounds = PreparedBounds(lights_[light]);
             tree_.nodes_[index].light = light;
             tree_.nodes_[index].guaranteed = lights_[light].must_be_sampled ? 1 : 0;
             tree_.trail_[light] = trail;
@@ -229,7 +235,7 @@ private:
         const auto second = static_cast<std::uint32_t>(tree_.nodes_.size());
         group.add(build(middle, end, trail | (std::uint64_t{1} << depth), depth + 1));
         Node& node = tree_.nodes_[index];
-        node.bounds = group.bounds();
+        node.bounds = PreparedBounds(group.bounds());
         node.second = second;
         node.guaranteed = tree_.nodes_[index + 1].guaranteed + tree_.nodes_[second].guaranteed;
         return group;
@@ -312,7 +318,7 @@ LightTree::LightTree(std::span<const LightBounds> lights) { const Builder build(
 LightTree::Shares LightTree::shares(std::uint32_t index, std::uint32_t units, const Receiver& receiver) const {
     const Node& node = nodes_[index];
     const Node &first = nodes_[index + 1], &second = nodes_[node.second];
-    const double a = importance(first.bounds, receiver), b = importance(second.bounds, receiver);
+    const double a = first.bounds.importance(receiver), b = second.bounds.importance(receiver);
     if (!(b > 0.0)) return {a > 0.0 ? units : 0, 0};
     if (!(a > 0.0)) return {0, units};
     const double free_units = static_cast<double>(units - node.guaranteed);
@@ -322,13 +328,21 @@ LightTree::Shares LightTree::shares(std::uint32_t index, std::uint32_t units, co
 
 // A tree of one light has no node that asks for its importance.
 bool LightTree::reaches(const Receiver& receiver) const {
-    return !nodes_.empty() && (nodes_[0].light == kNoLight || importance(nodes_[0].bounds, receiver) > 0.0);
+    return !nodes_.empty() && (nodes_[0].light == kNoLight || nodes_[0].bounds.importance(receiver) > 0.0);
 }
 
 LightTree::Chosen LightTree::choose(const Receiver& receiver, float u) const {
     if (!reaches(receiver)) return {};
-    auto unit = std::min(static_cast<std::uint32_t>(u * 0x1p24f), kUnits - 1);
-    std::uint32_t index = 0, units = kUnits;
+    return choose_in({}, unit_of(u), kUnits, receiver);
+}
+
+std::uint32_t LightTree::units_of(const Receiver& receiver, std::uint32_t light) const {
+    return reaches(receiver) ? units_in({}, kUnits, receiver, light) : 0;
+}
+
+LightTree::Chosen LightTree::choose_in(const Subtree& group, std::uint32_t unit, std::uint32_t units,
+                                       const Receiver& receiver) const {
+    std::uint32_t index = group.node;
     while (nodes_[index].light == kNoLight) {
         const auto [first, second] = shares(index, units, receiver);
         if (first + second == 0) return {};  // though their common bound may light the receiver
@@ -344,10 +358,10 @@ LightTree::Chosen LightTree::choose(const Receiver& receiver, float u) const {
     return {nodes_[index].light, units};
 }
 
-std::uint32_t LightTree::units_of(const Receiver& receiver, std::uint32_t light) const {
-    if (!reaches(receiver)) return 0;
-    std::uint64_t trail = trail_[light];
-    std::uint32_t index = 0, units = kUnits;
+std::uint32_t LightTree::units_in(const Subtree& group, std::uint32_t units, const Receiver& receiver,
+                                  std::uint32_t light) const {
+    std::uint64_t trail = trail_[light] >> group.depth;
+    std::uint32_t index = group.node;
     for (; nodes_[index].light == kNoLight && units > 0; trail >>= 1) {
         const auto [first, second] = shares(index, units, receiver);
         const bool to_second = (trail & 1u) != 0;
@@ -355,6 +369,49 @@ std::uint32_t LightTree::units_of(const Receiver& receiver, std::uint32_t light)
         index = to_second ? nodes_[index].second : index + 1;
     }
     return nodes_[index].light == light ? units : 0;
+}
+
+double LightTree::importance_of(const Subtree& group, const Receiver& receiver) const {
+    return nodes_[group.node].bounds.importance(receiver);
+}
+
+std::vector<LightTree::Subtree> LightTree::groups(std::size_t most) const {
+    std::vector<Subtree> out;
+    if (nodes_.empty()) return out;
+    out.push_back({0, 0, nodes_[0].guaranteed});
+    while (out.size() < most) {
+        std::size_t brightest = out.size();
+        for (std::size_t i = 0; i < out.size(); ++i)
+            if (nodes_[out[i].node].light == kNoLight &&
+                (brightest == out.size() ||
+                 nodes_[out[i].node].bounds.intensity() > nodes_[out[brightest].node].bounds.intensity()))
+                brightest = i;
+        if (brightest == out.size()) break;  // each is one light
+        const Subtree whole = out[brightest];
+        const std::uint32_t first = whole.node + 1, second = nodes_[whole.node].second;
+        out[brightest] = {first, whole.depth + 1, nodes_[first].guaranteed};
+        out.push_back({second, whole.depth + 1, nodes_[second].guaranteed});
+    }
+    std::ranges::sort(out, {}, &Subtree::node);
+    return out;
+}
+
+std::vector<std::uint32_t> LightTree::group_of_lights(std::span<const Subtree> groups) const {
+    std::vector<std::uint32_t> out(trail_.size(), kNoLight);
+    for (std::uint32_t g = 0; g < groups.size(); ++g) {
+        std::vector<std::uint32_t> below{groups[g].node};
+        while (!below.empty()) {
+            const std::uint32_t index = below.back();
+            below.pop_back();
+            if (nodes_[index].light != kNoLight) {
+                out[nodes_[index].light] = g;
+                continue;
+            }
+            below.push_back(index + 1);
+            below.push_back(nodes_[index].second);
+        }
+    }
+    return out;
 }
 
 }  // namespace lumel

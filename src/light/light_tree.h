@@ -15,8 +15,25 @@
 
 namespace lumel {
 
-// Of the light at a receiver, up to a factor that all bounds share; zero only if nothing can come from there.
-double importance(const LightBounds& bounds, const Receiver& receiver);
+// Of the surface's cosine: light along the surface counts in radiance, if not in irradiance.
+inline constexpr float kGrazing = 0.25f;
+
+// Bounds in the form in which millions of receivers ask for their importance.
+class PreparedBounds {
+public:
+    PreparedBounds() = default;
+    explicit PreparedBounds(const LightBounds& bounds);
+    // Of the light at a receiver, up to a factor that all bounds share; zero only if nothing can come from there.
+    [[nodiscard]] double importance(const Receiver& receiver) const;
+    [[nodiscard]] double intensity() const { return intensity_; }
+
+private:
+    Vec3 low_{}, high_{}, centre_{}, axis_{};
+    float radius_squared_ = 0.0f;
+    float cos_facing_ = -1.0f, sin_facing_ = 0.0f, cos_emission_ = 0.0f, reach_ = 0.0f;
+    double intensity_ = 0.0;
+    bool both_sides_ = false;
+};
 
 class LightTree {
 public:
@@ -35,9 +52,29 @@ public:
 
     [[nodiscard]] std::size_t node_count() const { return nodes_.size(); }
 
+    // A part of the tree, of which others say how often it is chosen.
+    struct Subtree {
+        std::uint32_t node = 0;        // its root
+        std::uint32_t depth = 0;       // of that
+        std::uint32_t guaranteed = 0;  // lights in it that must be sampled: it needs as many units
+    };
+    // At most `most` groups (at least one) that have each light once: the brightest are divided first. In the order of
+    // the tree, in which neighbours are alike: evenly spread numbers then choose evenly spread lights. Empty without
+    // lights.
+    [[nodiscard]] std::vector<Subtree> groups(std::size_t most) const;
+    // For each light the group that has it, or kNoLight where none does.
+    [[nodiscard]] std::vector<std::uint32_t> group_of_lights(std::span<const Subtree> groups) const;
+    // Importance of the lights of a group.
+    [[nodiscard]] double importance_of(const Subtree& group, const Receiver& receiver) const;
+    // As above, below a group's root: `unit` of the `units` that the group has been given.
+    [[nodiscard]] Chosen choose_in(const Subtree& group, std::uint32_t unit, std::uint32_t units,
+                                   const Receiver& receiver) const;
+    [[nodiscard]] std::uint32_t units_in(const Subtree& group, std::uint32_t units, const Receiver& receiver,
+                                         std::uint32_t light) const;
+
 private:
     struct Node {
-        LightBounds bounds;
+        PreparedBounds bounds;
         std::uint32_t second = 0;        // the other child; the first one follows its parent
         std::uint32_t light = kNoLight;  // of a leaf
         std::uint32_t guaranteed = 0;    // lights below that must be sampled

@@ -94,6 +94,48 @@ TEST(LightTree, StatesExactlyHowOftenEachLightIsChosen) {
     }
 }
 
+// Groups share all lights among them, and below their roots they choose as the whole tree does.
+TEST(LightTree, GroupsHaveEachLightOnce) {
+    for (const std::size_t count : {1u, 2u, 40u, 300u}) {
+        const std::vector<LightBounds> lights = crowd(count, 5);
+        const LightTree tree(lights);
+        for (const std::size_t most : {1u, 2u, 16u, 500u}) {
+            const std::vector<LightTree::Subtree> groups = tree.groups(most);
+            EXPECT_EQ(groups.size(), std::min(most, count));
+            const std::vector<std::uint32_t> group_of = tree.group_of_lights(groups);
+            std::vector<std::uint32_t> guaranteed(groups.size());
+            for (std::size_t i = 0; i < count; ++i) {
+                ASSERT_LT(group_of[i], groups.size()) << i;
+                guaranteed[group_of[i]] += lights[i].must_be_sampled ? 1 : 0;
+            }
+            for (std::size_t g = 0; g < groups.size(); ++g) EXPECT_EQ(groups[g].guaranteed, guaranteed[g]);
+        }
+    }
+}
+
+TEST(LightTree, GroupsStateExactlyHowOftenEachLightIsChosen) {
+    const std::vector<LightBounds> lights = crowd(200, 6);
+    const LightTree tree(lights);
+    const std::vector<LightTree::Subtree> groups = tree.groups(8);
+    const std::vector<std::uint32_t> group_of = tree.group_of_lights(groups);
+    constexpr std::uint32_t kGiven = 4000;  // of a group, more than it has lights
+    std::size_t chosen_lights = 0;
+    for (const Receiver& receiver : receivers(10)) {
+        std::vector<std::uint32_t> chosen(lights.size());
+        for (const LightTree::Subtree& group : groups)
+            for (std::uint32_t unit = 0; unit < kGiven; ++unit) {
+                const LightTree::Chosen c = tree.choose_in(group, unit, kGiven, receiver);
+                if (c.light != LightTree::kNoLight) ++chosen[c.light];
+            }
+        for (std::uint32_t i = 0; i < lights.size(); ++i) {
+            if (chosen[i] == 0) continue;  // or its part of the tree does not light the receiver
+            EXPECT_EQ(tree.units_in(groups[group_of[i]], kGiven, receiver, i), chosen[i]);
+            ++chosen_lights;
+        }
+    }
+    EXPECT_GT(chosen_lights, 500u);
+}
+
 // What can light a receiver has a chance, however dim: else points and spots without a radius would be lost.
 TEST(LightTree, LeavesOutNoLightThatMustBeSampled) {
     std::vector<LightBounds> lights = crowd(500, 4);
@@ -104,7 +146,7 @@ TEST(LightTree, LeavesOutNoLightThatMustBeSampled) {
         for (std::uint32_t i = 0; i < lights.size(); ++i) {
             const std::uint32_t units = tree.units_of(receiver, i);
             if (!lights[i].must_be_sampled) continue;
-            const bool lights_it = importance(lights[i], receiver) > 0.0;
+            const bool lights_it = PreparedBounds(lights[i]).importance(receiver) > 0.0;
             (lights_it ? lit : dark) += 1;
             if (lights_it) {
                 ASSERT_GT(units, 0u) << i;
@@ -148,7 +190,7 @@ TEST(Importance, OfZeroIsDarkness) {
             }
         }
         const Receiver receiver{{0, 0, 0}, kUp};
-        if (importance(b, receiver) > 0.0) continue;
+        if (PreparedBounds(b).importance(receiver) > 0.0) continue;
         ++zeros;
         for (int k = 0; k < 16; ++k) {
             const Vec2 s = random.pair();

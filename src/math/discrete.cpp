@@ -25,7 +25,7 @@ void share_units(std::span<const double> weights, std::size_t guaranteed, std::s
 }
 
 Choice choose(std::span<const std::uint32_t> ends, float u) {
-    const auto unit = std::min(static_cast<std::uint32_t>(u * 0x1p24f), kUnits - 1);
+    const std::uint32_t unit = unit_of(u);
     const auto found = std::upper_bound(ends.begin(), ends.end(), unit);
     const auto index = static_cast<std::size_t>(found - ends.begin());
     const std::uint32_t begin = index == 0 ? 0 : ends[index - 1];

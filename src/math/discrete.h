@@ -21,6 +21,11 @@ struct Choice {
     float fraction;  // where in the item's interval the number fell, (0, 1): a fresh random number, if a coarse one
 };
 
+inline std::uint32_t unit_of(float u) {
+    const auto unit = static_cast<std::uint32_t>(u * 0x1p24f);
+    return unit < kUnits ? unit : kUnits - 1;
+}
+
 Choice choose(std::span<const std::uint32_t> ends, float u);
 
 inline std::uint32_t units_of(std::span<const std::uint32_t> ends, std::size_t index) {

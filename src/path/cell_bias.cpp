@@ -69,7 +69,7 @@ Status measure_cell_bias(const TexelBuffer& texels, const ChartSet& charts, cons
     const double texels_per_measured =
         static_cast<double>(texels.size()) / static_cast<double>(std::max<std::size_t>(1, blocks.texels.size()));
     same.stop = StopRule::fixed;
-    same.guided = false;
+    same.guided = same.lights_learned = false;
     Transport to_the_end = transport;
     to_the_end.cells = nullptr;
     ProgressParts progress(context, "trace", 1.0 + kPathWork);

@@ -77,7 +77,7 @@ void PathIntegrator::gather_cell(const GatherSite& site, bool back, Workspace& w
         }
         const auto starts = std::span<const PathStart>(w.starts).first(lanes);
         sink.begin(starts, base);
-        trace_paths(starts, w, sink, nullptr);
+        trace_paths(starts, w, sink, {});
     }
     sink.end();
 }

@@ -18,6 +18,9 @@ namespace {
 
 constexpr std::uint32_t kFirstRound = 8;  // each is followed by as many samples as there are
 constexpr std::uint32_t kFewestSamplesForGuide = 64;
+// Of a texel; its block has seen enough of its lights by then. Each new table begins a new sequence of choices, and a
+// choice is the more even the longer its sequence.
+constexpr std::uint32_t kLightsKnownFrom = 4 * kFirstRound;
 
 }  // namespace
 
@@ -45,8 +48,10 @@ void PathIntegrator::begin_texel(const GatherSite& site, Workspace& w, TexelStat
 }
 
 bool PathIntegrator::gather_samples(std::uint32_t first, std::uint32_t last, bool learning, Workspace& w,
-                                    TexelState& texel, const Context& context) const {
-    const HemisphereGuide* const guide = w.guide ? &*w.guide : nullptr;
+                                    std::size_t which, const Context& context) const {
+    TexelState& texel = w.texels[which];
+    const Guides guides{w.guide ? &*w.guide : nullptr, w.learns_lights ? w.light_statistics.table(which) : nullptr,
+                        w.light_rate};
     for (std::uint32_t base = first, lanes = 0; base < last; base += lanes) {
         if (context.cancelled()) return false;
         lanes = std::min(static_cast<std::uint32_t>(kWavefrontLanes), last - base);
@@ -63,8 +68,9 @@ bool PathIntegrator::gather_samples(std::uint32_t first, std::uint32_t last, boo
         }
         const auto starts = std::span<const PathStart>(w.starts).first(lanes);
         texel.sink.begin(starts, texel.both_sides ? 2.0f : 1.0f);
-        trace_paths(starts, w, texel.sink, guide);
+        trace_paths(starts, w, texel.sink, guides);
         texel.sink.end();
+        if (w.learns_lights) w.learn_of_lights(which, lanes);
         if (!learning) continue;
         for (std::uint32_t lane = 0; lane < lanes; ++lane)
             w.guide_statistics.add((base + lane) & 1u, w.first_draw[lane].point, w.first_draw[lane].density,
@@ -73,11 +79,11 @@ bool PathIntegrator::gather_samples(std::uint32_t first, std::uint32_t last, boo
     return true;
 }
 
-bool PathIntegrator::gather_until_converged(Workspace& w, TexelState& texel, const Context& context) const {
+bool PathIntegrator::gather_until_converged(Workspace& w, std::size_t which, const Context& context) const {
     const std::uint32_t step = (options_.samples + 9) / 10;
     for (std::uint32_t first = 0; first < options_.samples; first += step) {
-        if (!gather_samples(first, std::min(first + step, options_.samples), false, w, texel, context)) return false;
-        if (texel.sink.converged(options_.relative_error_of_mean)) break;
+        if (!gather_samples(first, std::min(first + step, options_.samples), false, w, which, context)) return false;
+        if (w.texels[which].sink.converged(options_.relative_error_of_mean)) break;
     }
     return true;
 }
@@ -87,9 +93,10 @@ void PathIntegrator::gather_texels(std::span<const GatherSite> sites, std::span<
     LUMEL_CHECK(sites.size() == indices.size() && sites.size() <= kMostTexelsTogether, sites.size(), indices.size());
     w.texels.clear();
     for (const GatherSite& site : sites) begin_texel(site, w, w.texels.emplace_back(options_));
+    w.forget();
     if (options_.stop == StopRule::flux) {
-        for (TexelState& texel : w.texels)
-            if (!gather_until_converged(w, texel, context)) return;
+        for (std::size_t k = 0; k < w.texels.size(); ++k)
+            if (!gather_until_converged(w, k, context)) return;
     } else if (!gather_rounds(w, context)) {
         return;
     }
@@ -100,17 +107,26 @@ bool PathIntegrator::gather_rounds(Workspace& w, const Context& context) const {
     const std::uint32_t budget = options_.samples;
     const bool adaptive = options_.stop == StopRule::error;
     // A guide is of one side.
-    const bool guided =
-        options_.guided && budget >= kFewestSamplesForGuide && std::ranges::none_of(w.texels, &TexelState::both_sides);
-    w.guide.reset();
-    w.guide_statistics.clear();
+    const bool may_learn = budget >= kFewestSamplesForGuide && std::ranges::none_of(w.texels, &TexelState::both_sides);
+    const bool guided = may_learn && options_.guided;
+    w.learns_lights = may_learn && options_.lights_learned;
+    if (w.learns_lights) {
+        std::array<Receiver, kMostTexelsTogether> receivers;
+        for (std::size_t k = 0; k < w.texels.size(); ++k) {
+            const SurfaceStart& start = w.texels[k].surfaces[0];
+            receivers[k] = {start.origin, start.normal, nullptr};
+        }
+        w.light_statistics.begin(transport_.lights, std::span(receivers).first(w.texels.size()));
+    }
     std::array<std::uint32_t, kMostTexelsTogether> wanted;
     std::array<TexelProgress, kMostTexelsTogether> progress;
     wanted.fill(budget);
-    std::uint32_t last = guided || adaptive ? kFirstRound : budget;
+    std::uint32_t last = guided || w.learns_lights || adaptive ? kFirstRound : budget;
     for (std::uint32_t first = 0; first < budget; first = last, last *= 2) {
         last = std::min(last, budget);
         if (guided && first > 0) w.guide = w.guide_statistics.learn();
+        if (w.learns_lights && first > 0 && first <= kLightsKnownFrom) w.light_statistics.learn();
+        if (w.learns_lights && first == kFirstRound) w.light_rate = w.light_rate_statistics.rate(kFirstRound / 2);
         if (adaptive && first >= kFewestAdaptiveSamples) {
             for (std::size_t k = 0; k < w.texels.size(); ++k) progress[k] = w.texels[k].sink.progress();
             adaptive_samples(std::span(progress).first(w.texels.size()), options_.relative_error_of_mean, budget,
@@ -118,9 +134,8 @@ bool PathIntegrator::gather_rounds(Workspace& w, const Context& context) const {
         }
         bool any = false;
         for (std::size_t k = 0; k < w.texels.size(); ++k) {
-            TexelState& texel = w.texels[k];
-            const std::uint32_t from = texel.sink.traced(), to = std::min(last, wanted[k]);
-            if (from < to && !gather_samples(from, to, guided, w, texel, context)) return false;
+            const std::uint32_t from = w.texels[k].sink.traced(), to = std::min(last, wanted[k]);
+            if (from < to && !gather_samples(from, to, guided, w, k, context)) return false;
             any = any || wanted[k] > last;
         }
         if (!any) break;

@@ -140,7 +140,7 @@ private:
 void PathIntegrator::gather_irradiance(std::span<const PathStart> starts, Workspace& workspace,
                                        std::span<Vec3> irradiance, std::span<std::uint8_t> valid) const {
     IrradianceSink sink(options_, starts, irradiance, valid);
-    trace_paths(starts, workspace, sink, nullptr);
+    trace_paths(starts, workspace, sink, {});
 }
 
 }  // namespace lumel

@@ -17,6 +17,7 @@
 #include "cells/surface_cells.h"
 #include "light/light_set.h"
 #include "lumel/options.h"
+#include "path/light_rate.h"
 #include "path/radiance_sums.h"
 #include "scene/surface.h"
 #include "texel/texel_buffer.h"
@@ -25,6 +26,7 @@
 namespace lumel {
 
 class HemisphereGuide;
+struct LightTable;
 
 inline constexpr std::size_t kWavefrontLanes = 256;
 inline constexpr std::size_t kMaxPointSuns = 32;
@@ -36,7 +38,9 @@ struct PathOptions {
     std::uint64_t seed = 1;
     float ao_distance = 1.0f;  // metres
     bool two_sided = false;
-    bool guided = false;  // first rays follow what texels nearby have seen (path/hemisphere_guide.h)
+    // What texels nearby have seen: first rays follow it (path/hemisphere_guide.h), and lights are chosen by it
+    // (path/light_statistics.h).
+    bool guided = false, lights_learned = false;
     StopRule stop = StopRule::fixed;
     double relative_error_of_mean = 0.0;  // StopRule::error and flux: error / z(confidence)
     // Artist's factors of the layers, and which of them the total (its variance, pictures) sums.
@@ -116,19 +120,25 @@ public:
 private:
     struct TexelState;
     void begin_texel(const GatherSite& site, Workspace& workspace, TexelState& texel) const;
-    // Samples first to last - 1 of a texel. `learning`: for the guide, too. These return false where cancelled.
-    bool gather_samples(std::uint32_t first, std::uint32_t last, bool learning, Workspace& workspace, TexelState& texel,
+    // Samples first to last - 1 of a texel of the workspace. `learning`: for the guide, too. These return false where
+    // cancelled.
+    bool gather_samples(std::uint32_t first, std::uint32_t last, bool learning, Workspace& workspace, std::size_t texel,
                         const Context& context) const;
     // All samples of the workspace's texels, each round as many as there were before; between them the guide is learned
     // and the samples are allotted.
     bool gather_rounds(Workspace& workspace, const Context& context) const;
     // By Frostbite's rule.
-    bool gather_until_converged(Workspace& workspace, TexelState& texel, const Context& context) const;
+    bool gather_until_converged(Workspace& workspace, std::size_t texel, const Context& context) const;
     // Fills in `sunlit`, where knows_point_suns_.
     void find_sunlit(std::span<SurfaceStart> starts, bool bounced, Workspace& workspace) const;
+    // What is known of the light around the starts; null: nothing.
+    struct Guides {
+        const HemisphereGuide* directions = nullptr;
+        const LightTable* lights = nullptr;
+        LightRate rate;
+    };
     template <class Sink>
-    void trace_paths(std::span<const PathStart> starts, Workspace& workspace, Sink& sink,
-                     const HemisphereGuide* guide) const;
+    void trace_paths(std::span<const PathStart> starts, Workspace& workspace, Sink& sink, const Guides& guides) const;
 
     Transport transport_;
     PathOptions options_;

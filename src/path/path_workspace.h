@@ -1,12 +1,14 @@
 // Scratch memory of one thread that traces paths.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
 #include "path/hemisphere_guide.h"
+#include "path/light_statistics.h"
 #include "path/path_integrator.h"
 #include "path/texel_sink.h"
 
@@ -40,7 +42,13 @@ public:
         std::uint32_t lane;
         Layer layer;
         Vec3 direction;
-        Vec3 value;  // radiance over density, MIS included; times throughput after a bounce
+        Vec3 value;           // radiance over density, MIS included; times throughput after a bounce
+        std::uint32_t group;  // LightSample::group
+    };
+    // What became of the sample of a local light at the start of a path.
+    struct FirstLight {
+        std::uint32_t group;  // that a table chose; kNone: none did
+        float value;
     };
 
     std::array<Vertex, kWavefrontLanes> vertex;
@@ -50,8 +58,11 @@ public:
     std::array<float, kWavefrontLanes> first_pdf;
     std::array<HemisphereGuide::Draw, kWavefrontLanes> first_draw;
     std::array<float, kWavefrontLanes> first_radiance;  // luminance along the first ray, MIS included
-    std::array<std::uint32_t, kWavefrontLanes> lanes;   // of the paths still alive
-    std::array<Ray, kWavefrontLanes> rays;              // by position in `lanes`
+    std::array<float, kWavefrontLanes>
+        first_sampled;  // luminance of irradiance by light samples at the start, MIS included
+    std::array<FirstLight, kWavefrontLanes> first_light;
+    std::array<std::uint32_t, kWavefrontLanes> lanes;  // of the paths still alive
+    std::array<Ray, kWavefrontLanes> rays;             // by position in `lanes`
     std::array<Hit, kWavefrontLanes> hits;
     std::array<AlbedoLookup, kWavefrontLanes> albedo;  // at `hits`
 
@@ -66,6 +77,31 @@ public:
     std::vector<TexelState> texels;  // those that are gathered together
     GuideStatistics guide_statistics;
     std::optional<HemisphereGuide> guide;
+    LightStatistics light_statistics;  // of the texels
+    bool learns_lights = false;
+    LightRate light_rate;
+    LightRateStatistics light_rate_statistics;
+
+    // From the first `count` paths of a wavefront of a texel, which has been traced.
+    void learn_of_lights(std::size_t texel, std::size_t count) {
+        for (std::size_t lane = 0; lane < count; ++lane) {
+            if (first_light[lane].group != kNone)
+                light_statistics.add(texel, first_light[lane].group, first_light[lane].value);
+            if (light_rate.paths > 1) continue;
+            const float cosine = std::max(0.0f, dot(first_direction[lane], starts[lane].normal));
+            light_rate_statistics.add(first_sampled[lane], first_radiance[lane] * cosine / first_pdf[lane]);
+        }
+        light_rate_statistics.end_texel();
+    }
+
+    // What was learned of the texels before.
+    void forget() {
+        guide.reset();
+        guide_statistics.clear();
+        learns_lights = false;
+        light_rate = {};
+        light_rate_statistics = {};
+    }
 };
 
 // Which of n points a sample starts from. Counts that do not fill a whole round of the points leave out others in each

@@ -78,7 +78,9 @@ inline void begin_surfaces(std::span<const Hit> hits, const WorldGeometry& geome
 template <class Workspace>
 class LightQueue {
 public:
-    LightQueue(const Transport& transport, Workspace& workspace) : transport_(transport), workspace_(workspace) {
+    // `share`: of the paths, that take a sample.
+    LightQueue(const Transport& transport, Workspace& workspace, float share)
+        : transport_(transport), workspace_(workspace), share_(share) {
         workspace_.pending.clear();
         workspace_.shadow_rays.clear();
     }
@@ -86,9 +88,10 @@ public:
     // `pdf_of(direction, cosine)`: density of the direction sampling at this vertex, for MIS. `value_of(cosine)`: what
     // multiplies the light sample's weight. `suns_known`: suns without size are left out (SurfaceStart::sunlit).
     template <class PdfOf, class ValueOf>
-    void sample_all(std::uint32_t lane, const PathStart& start, std::uint32_t first_pair, bool bounced, bool suns_known,
-                    PdfOf&& pdf_of, ValueOf&& value_of) {
-        const Sampler sampler(start.key, start.index);
+    // `number`: of the sample in the point set; `table`: Receiver::table.
+    void sample_all(std::uint32_t lane, const PathStart& start, std::uint32_t number, std::uint32_t first_pair,
+                    bool bounced, bool suns_known, const LightTable* table, PdfOf&& pdf_of, ValueOf&& value_of) {
+        const Sampler sampler(start.key, number);
         const auto& vertex = workspace_.vertex[lane];
         const LightSet& lights = transport_.lights;
         const std::uint32_t key = alpha_key(start, first_pair);
@@ -101,11 +104,12 @@ public:
         if (lights.samples_sky())
             push(lane, Layer::sky, vertex, lights.sample_sky(sampler.pair(first_pair + kSkyPair)), key, pdf_of,
                  value_of);
-        if (lights.has_local())
-            push(lane, Layer::direct, vertex,
-                 lights.sample_local({vertex.position, vertex.normal}, sampler.one(first_pair + kChoicePair),
-                                     sampler.pair(first_pair + kLocalPair), bounced),
-                 key, pdf_of, value_of);
+        if (!lights.has_local()) return;
+        const LightSample local =
+            lights.sample_local({vertex.position, vertex.normal, table}, sampler.one(first_pair + kChoicePair),
+                                sampler.pair(first_pair + kLocalPair), bounced);
+        if (table) workspace_.first_light[lane] = {local.group, 0.0f};
+        push(lane, Layer::direct, vertex, local, key, pdf_of, value_of);
     }
 
     // Traces the queue and calls arrive(pending) for each sample that is not blocked, in the order of queueing.
@@ -124,8 +128,10 @@ private:
         const float cosine = dot(sample.direction, vertex.normal);
         if (sample.distance <= 0.0f || cosine <= 0.0f || is_black(sample.weight)) return;
         if (vertex.face_normal != Vec3{} && dot(sample.direction, vertex.face_normal) <= 0.0f) return;
-        const float mis = sample.pdf > 0.0f ? power_heuristic(sample.pdf, pdf_of(sample.direction, cosine)) : 1.0f;
-        workspace_.pending.push_back({lane, layer, sample.direction, value_of(cosine) * sample.weight * mis});
+        const float weight =
+            sample.pdf > 0.0f ? power_heuristic(sample.pdf * share_, pdf_of(sample.direction, cosine)) : 1.0f;
+        const Vec3 value = value_of(cosine) * sample.weight * (weight / share_);
+        workspace_.pending.push_back({lane, layer, sample.direction, value, sample.group});
         Ray ray;
         ray.origin = vertex.position;
         ray.direction = sample.direction;
@@ -137,6 +143,7 @@ private:
 
     const Transport& transport_;
     Workspace& workspace_;
+    float share_;
 };
 
 }  // namespace path_detail
@@ -144,12 +151,13 @@ private:
 // Sink: void_path(lane, weight); free_path(lane, direction, pdf, distance or infinity, sky);
 // light(lane, layer, direction, radiance over density). kSunsKnown: PathStart::sunlit is filled in. kFromCell: the
 // start is a cell's, whose light is what a bounce sees of it, and paths that end at a cell are links: link(lane,
-// direction, pdf, cell, share of its irradiance). kMayBeGuided: first rays are drawn by `guide`, where there is one,
-// and Workspace::first_radiance is filled in.
+// direction, pdf, cell, share of its irradiance). kMayBeGuided: there may be guides, and first_radiance, first_sampled
+// and first_light of the workspace are filled in.
 template <class Sink>
 void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w, Sink& sink,
-                                 const HemisphereGuide* guide) const {
+                                 const Guides& guides) const {
     using namespace path_detail;
+    const HemisphereGuide* const guide = guides.directions;
     LUMEL_CHECK(starts.size() <= kWavefrontLanes, starts.size());
     const LightSet& lights = transport_.lights;
     const WorldGeometry& geometry = transport_.geometry;
@@ -164,6 +172,8 @@ void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w
         const Vec3 local = GatherHemisphere::sample(draw.point);
         w.first_draw[lane] = draw;
         w.first_radiance[lane] = 0.0f;
+        w.first_sampled[lane] = 0.0f;
+        w.first_light[lane] = {kNone, 0.0f};
         auto& vertex = w.vertex[lane];
         vertex.position = starts[lane].origin;
         vertex.normal = starts[lane].normal;
@@ -199,14 +209,16 @@ void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w
     // Light that reaches the start from sampled directions, of void paths too.
     {
         const bool suns_known = Sink::kSunsKnown && knows_point_suns_;
-        LightQueue<Workspace> queue(transport_, w);
+        LightQueue<Workspace> queue(transport_, w, guides.rate.share());
         for (std::uint32_t lane = 0; lane < count; ++lane) {
             for (std::uint32_t bits = suns_known ? starts[lane].sunlit : 0; bits != 0; bits &= bits - 1) {
                 const LightSample sun = lights.sample_sun(std::countr_zero(bits), {}, Sink::kFromCell);
                 sink.light(lane, Layer::direct, sun.direction, sun.weight);
             }
+            const std::uint32_t index = starts[lane].index;
+            if (!guides.rate.takes(index)) continue;
             queue.sample_all(
-                lane, starts[lane], 0, Sink::kFromCell, suns_known,
+                lane, starts[lane], guides.rate.number(index), 0, Sink::kFromCell, suns_known, guides.lights,
                 [&](Vec3 direction, float cosine) {
                     const float pdf = GatherHemisphere::pdf(cosine);
                     if (!guide) return pdf;
@@ -217,7 +229,16 @@ void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w
                     return Vec3{1, 1, 1};
                 });
         }
-        queue.resolve([&](const auto& event) { sink.light(event.lane, event.layer, event.direction, event.value); });
+        queue.resolve([&](const auto& event) {
+            sink.light(event.lane, event.layer, event.direction, event.value);
+            if constexpr (Sink::kMayBeGuided) {
+                const float value = luminance(event.value) * dot(event.direction, starts[event.lane].normal);
+                w.first_sampled[event.lane] += value;
+                if (event.group != kNone)
+                    w.first_light[event.lane].value =
+                        guides.rate.share() * (kGrazing * luminance(event.value) + (1.0f - kGrazing) * value);
+            }
+        });
     }
 
     for (std::uint32_t bounce = 0;; ++bounce) {
@@ -227,7 +248,8 @@ void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w
         const auto arrive = [&](std::uint32_t lane, Layer layer, const LightHit& light) {
             if (is_black(light.radiance)) return;
             const auto& vertex = w.vertex[lane];
-            const float mis = light.pdf > 0.0f ? power_heuristic(vertex.direction_pdf, light.pdf) : 1.0f;
+            const float light_pdf = first ? light.pdf * guides.rate.share() : light.pdf;
+            const float mis = light_pdf > 0.0f ? power_heuristic(vertex.direction_pdf, light_pdf) : 1.0f;
             if (first) {
                 sink.light(lane, layer, vertex.direction, light.radiance * (mis / vertex.direction_pdf));
                 if constexpr (Sink::kMayBeGuided) w.first_radiance[lane] += luminance(light.radiance) * mis;
@@ -245,8 +267,9 @@ void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w
             const Hit& hit = w.hits[i];
             auto& vertex = w.vertex[lane];
             const float distance = hit.missed() ? kInfiniteDistance : hit.t;
+            const Receiver receiver{vertex.position, vertex.normal, first ? guides.lights : nullptr};
             if (lights.has_shapes())
-                lights.shapes_along({vertex.position, vertex.normal}, vertex.direction, distance, bounced,
+                lights.shapes_along(receiver, vertex.direction, distance, bounced,
                                     [&](const LightHit& light) { arrive(lane, Layer::direct, light); });
             if (first) sink.free_path(lane, vertex.direction, vertex.direction_pdf, distance, hit.missed());
             if (hit.missed()) {
@@ -262,8 +285,8 @@ void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w
             if (hit.back_face && !(triangle.flags & kDoubleSided)) continue;
             if (triangle.flags & kEmissive)
                 arrive(lane, Layer::direct,
-                       lights.emissive({vertex.position, vertex.normal}, hit.triangle, hit.b1, hit.b2, vertex.direction,
-                                       hit.t, hit.back_face, bounced));
+                       lights.emissive(receiver, hit.triangle, hit.b1, hit.b2, vertex.direction, hit.t, hit.back_face,
+                                       bounced));
             if (bounce == options_.bounces || (triangle.flags & kOccluderOnly)) continue;
 
             const Vec3 albedo = SurfaceReader::finish(w.albedo[i]);
@@ -296,12 +319,12 @@ void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w
         if (alive == 0) break;
 
         // Direct light on it.
-        LightQueue<Workspace> queue(transport_, w);
+        LightQueue<Workspace> queue(transport_, w, 1.0f);
         for (std::size_t i = 0; i < alive; ++i) {
             const std::uint32_t lane = w.lanes[i];
             const Vec3 scale = w.throughput[lane] * w.vertex[lane].reflectance;
             queue.sample_all(
-                lane, starts[lane], first_pair, true, false,
+                lane, starts[lane], starts[lane].index, first_pair, true, false, nullptr,
                 [](Vec3, float cosine) { return CosineHemisphere::pdf(cosine); },
                 [&](float cosine) { return scale * cosine; });
         }
