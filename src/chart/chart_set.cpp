@@ -14,9 +14,8 @@
 #include "chart/bad_charts.h"
 #include "chart/kept_layout.h"
 #include "chart/mesh_charts.h"
-#include "chart/parameterize.h"
-#include "chart/segment.h"
 #include "chart/topology.h"
+#include "chart/unwrap.h"
 #include "chart/uv1.h"
 #include "chart/where.h"
 
@@ -243,55 +242,17 @@ private:
 
     // ---- Charts of our own ------------------------------------------------------------------------------------------
 
-    struct Job {
-        std::uint32_t mesh;
-        std::vector<std::uint32_t> cluster;
-        Parameterized result;
-    };
-
     bool unwrap(const std::vector<std::uint32_t>& own) {
-        const std::function<bool()> cancelled = [this] { return context_.cancelled(); };
-        std::vector<std::vector<std::vector<std::uint32_t>>> clusters(own.size());
-        const bool segmented = parallel_for(
-            context_, own.size(), 1,
-            [&](const ChunkRange& range) {
-                const std::uint32_t m = own[range.begin];
-                clusters[range.begin] = segment(mesh(m), topology_[m], {}, cancelled);
-            },
-            "segment");
-        if (!segmented) return false;
-
-        std::vector<Job> jobs;
-        for (std::size_t k = 0; k < own.size(); ++k)
-            for (auto& cluster : clusters[k]) jobs.push_back({own[k], std::move(cluster), {}});
-        const bool flattened = parallel_for(
-            context_, jobs.size(), 16,
-            [&](const ChunkRange& range) {
-                for (std::size_t j = range.begin; j < range.end; ++j)
-                    jobs[j].result =
-                        parameterize(mesh(jobs[j].mesh), topology_[jobs[j].mesh], jobs[j].cluster, {}, cancelled);
-            },
-            "unwrap");
-        if (!flattened || context_.cancelled()) return false;
-        collect(jobs);
-        return true;
-    }
-
-    // Jobs of one mesh are consecutive.
-    void collect(std::vector<Job>& jobs) {
-        for (std::size_t j = 0; j < jobs.size();) {
-            const std::uint32_t m = jobs[j].mesh;
-            std::vector<FlatChart> flat;
-            std::uint32_t fallbacks = 0;
-            for (; j < jobs.size() && jobs[j].mesh == m; ++j) {
-                std::move(jobs[j].result.charts.begin(), jobs[j].result.charts.end(), std::back_inserter(flat));
-                fallbacks += jobs[j].result.fallbacks;
-            }
-            charts_.meshes[m] = assemble_charts(mesh(m).triangles.size(), std::move(flat));
-            if (fallbacks > 0)
+        std::vector<UnwrapMesh> meshes;
+        for (const std::uint32_t m : own) meshes.push_back({&mesh(m), &topology_[m], {}, 0});
+        if (!unwrap_meshes(meshes, context_)) return false;
+        for (std::size_t k = 0; k < own.size(); ++k) {
+            charts_.meshes[own[k]] = assemble_charts(mesh(own[k]).triangles.size(), std::move(meshes[k].charts));
+            if (meshes[k].fallbacks > 0)
                 context_.diagnostics.add("unwrap-fallback", "clusters were cut by the sides of a box, as no map fitted",
-                                         node_and_mesh(scene_, used_.instance[m]), fallbacks);
+                                         node_and_mesh(scene_, used_.instance[own[k]]), meshes[k].fallbacks);
         }
+        return true;
     }
 
     const Scene& scene_;

@@ -10,13 +10,9 @@
 #include <optional>
 #include <vector>
 
-namespace lumel {
+#include "chart/patch.h"
 
-// A patch with its own vertex numbers; triangles are consistently oriented.
-struct Patch {
-    std::vector<Eigen::Vector3d> positions;
-    std::vector<std::array<std::uint32_t, 3>> triangles;
-};
+namespace lumel {
 
 // UVs of the patch's vertices, with vertices `pin_a` and `pin_b` at the UVs given. Nothing where the system cannot be
 // solved. Does not check flips or overlaps.

@@ -48,9 +48,9 @@ TEST_P(RealScenes, AreClean) {
 
 INSTANTIATE_TEST_SUITE_P(
     Files, RealScenes,
-    testing::Values(RealScene{"kenney_city.glb", 950, false}, RealScene{"godot_room.glb", 120, false},
-                    RealScene{"smooth_sphere_lowpoly.glb", 14, false}, RealScene{"freedoom_e1m1.glb", 1600, false},
-                    RealScene{"cornell_box.glb", 19, false}, RealScene{"godot_player.glb", 130, false},
+    testing::Values(RealScene{"kenney_city.glb", 760, false}, RealScene{"godot_room.glb", 46, false},
+                    RealScene{"smooth_sphere_lowpoly.glb", 4, false}, RealScene{"freedoom_e1m1.glb", 960, false},
+                    RealScene{"cornell_box.glb", 19, false}, RealScene{"godot_player.glb", 74, false},
                     RealScene{"bench_courtyard.glb", 60, true}, RealScene{"bench_cornell.glb", 20, true}),
     [](const auto& info) {
         std::string name = info.param.file;

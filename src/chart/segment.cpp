@@ -8,38 +8,13 @@
 #include <queue>
 #include <tuple>
 
+#include "chart/crease.h"
 #include "chart/normal_cone.h"
 
 namespace lumel {
 namespace {
 
 Eigen::Vector3d to_double(Vec3 v) { return {v.x, v.y, v.z}; }
-
-// ---- Edges ----------------------------------------------------------------------------------------------------------
-
-// Do both triangles shade the shared edge with the same vertex normals (within 10 degrees)?
-bool shaded_smoothly(const Mesh& mesh, std::uint32_t edge, std::uint32_t twin) {
-    constexpr float kSameNormalCos = 0.985f;
-    const auto same = [&](std::uint32_t a, std::uint32_t b) {
-        return a == b || dot(mesh.normals[a], mesh.normals[b]) > kSameNormalCos;
-    };
-    return same(corner_vertex(mesh, edge), corner_vertex(mesh, next_edge(twin))) &&
-           same(corner_vertex(mesh, next_edge(edge)), corner_vertex(mesh, twin));
-}
-
-// A crease: light changes abruptly there anyway, so that a cut costs nothing.
-bool is_crease(const Mesh& mesh, const MeshTopology& topology, const SegmentOptions& options, std::uint32_t edge) {
-    const std::uint32_t twin = topology.twin[edge];
-    const double cosine = dot(topology.normal[edge / 3], topology.normal[twin / 3]);
-    if (cosine >= options.hard_crease_cos) return false;
-    return cosine < options.soft_crease_cos || !shaded_smoothly(mesh, edge, twin);
-}
-
-double edge_length(const Mesh& mesh, std::uint32_t edge) {
-    return (to_double(mesh.positions[corner_vertex(mesh, edge)]) -
-            to_double(mesh.positions[corner_vertex(mesh, next_edge(edge))]))
-        .norm();
-}
 
 // ---- Flat regions ---------------------------------------------------------------------------------------------------
 
@@ -147,7 +122,7 @@ private:
             if (twin == kNone || region[e / 3] == region[twin / 3]) continue;
             Border& border = clusters_[region[e / 3]].borders[region[twin / 3]];
             // The twin counts its own side, so that both sides see the same lengths.
-            (is_crease(mesh, topology, options_, std::min(e, twin)) ? border.crease : border.smooth) +=
+            (is_crease(mesh, topology, options_.crease, e) ? border.crease : border.smooth) +=
                 edge_length(mesh, std::min(e, twin));
         }
     }

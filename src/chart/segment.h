@@ -12,16 +12,16 @@
 #include <functional>
 #include <vector>
 
+#include "chart/crease.h"
 #include "chart/topology.h"
 
 namespace lumel {
 
 // Cosines of angles.
 struct SegmentOptions {
-    double cone_cos = 0.34202;           // 70 degrees: the largest half angle of a cluster's normals
-    double hard_crease_cos = 0.8660254;  // 30 degrees: sharper edges cut where the vertex normals of their sides differ
-    double soft_crease_cos = 0.2588190;  // 75 degrees: sharper edges cut even where the vertex normals agree
-    double planar_cos = 0.99998;         // 0.36 degrees: normals this near to the first triangle's are one plane
+    double cone_cos = 0.34202;    // 70 degrees: the largest half angle of a cluster's normals
+    CreaseRule crease;            // where clusters are cut
+    double planar_cos = 0.99998;  // 0.36 degrees: normals this near to the first triangle's are one plane
 };
 
 // Edge-connected triangle lists, ascending, ordered by their first triangle. Zero-area triangles are in none of them.
