@@ -10,6 +10,7 @@ void add_trace(CLI::App& app);      // rays per second
 void add_texels(CLI::App& app);     // rasterising pages, sample points
 void add_replay(CLI::App& app);     // the bake against its own rays
 void add_transport(CLI::App& app);  // error against cost, method by method
+void add_charts(CLI::App& app);     // charts of scenes: seams, stretch, time
 void add_pack(CLI::App& app);       // chart masks: texels used, time
 void add_encodings(CLI::App& app);  // error of encodings over normals
 void add_bc(CLI::App& app);         // block compression

@@ -11,6 +11,7 @@ int main(int argc, char** argv) {
     lumel::bench::add_texels(app);
     lumel::bench::add_replay(app);
     lumel::bench::add_transport(app);
+    lumel::bench::add_charts(app);
     lumel::bench::add_pack(app);
     lumel::bench::add_encodings(app);
     lumel::bench::add_bc(app);
