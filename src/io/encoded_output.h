@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "io/encoded_page.h"
+#include "io/file_set.h"
 #include "io/light_record.h"
-#include "io/output_folder.h"
 
 namespace lumel {
 
@@ -20,7 +20,7 @@ public:
                                         const LightRecord& record);
 
     // Where unfinished files are.
-    [[nodiscard]] const std::filesystem::path& partial() const { return partial_.path(); }
+    [[nodiscard]] const std::filesystem::path& partial() const { return files_.partial(); }
 
     // Writes the next page.
     Status page(const EncodedPage& page, Context& context);
@@ -34,15 +34,11 @@ private:
         std::string file, type;
         std::uint32_t width, height;
     };
-    EncodedOutput(std::filesystem::path folder, OutputFolder partial, const Encoding& encoding, LightRecord record)
-        : folder_(std::move(folder)), partial_(std::move(partial)), encoding_(&encoding), record_(std::move(record)) {}
+    EncodedOutput(FileSet files, const Encoding& encoding, LightRecord record)
+        : files_(std::move(files)), encoding_(&encoding), record_(std::move(record)) {}
     [[nodiscard]] std::string json() const;
-    // Of a file in there as the user knows it: by its place.
-    [[nodiscard]] Error in_place(Error error) const;
-    Status remove_older_pages() const;
 
-    std::filesystem::path folder_;
-    OutputFolder partial_;
+    FileSet files_;
     const Encoding* encoding_;
     LightRecord record_;
     std::vector<Page> pages_;
