@@ -55,13 +55,24 @@ std::vector<Strategy> strategies(std::size_t charts, std::uint64_t texels, Orien
     return out;
 }
 
-PageFill fill(const Kinds& kinds, const Sorted& sorted, const Strategy& strategy, std::size_t charts,
-              const FillOptions& options, const Context& context, const std::function<void(std::size_t)>& on_placed) {
+// Taken before any chart is placed.
+void take_fixed(std::span<const ChartMask> masks, std::span<const FixedMask> fixed, std::uint32_t max_level,
+                PageWork& work) {
+    for (const FixedMask& f : fixed) {
+        work.map.take(masks[f.mask], f.x, f.y, max_level);
+        work.fill.height = std::max(work.fill.height, f.y + masks[f.mask].height);
+    }
+}
+
+PageFill fill(std::span<const ChartMask> masks, const Kinds& kinds, const Sorted& sorted, const Strategy& strategy,
+              std::size_t charts, const FillOptions& options, const Context& context,
+              const std::function<void(std::size_t)>& on_placed) {
     PageWork work(kinds, strategy, options.width, options.height == 0 ? kNoLimit : options.height, sorted.max_level,
                   charts);
     work.cancelled = [&context] { return context.cancelled(); };
     work.on_placed = on_placed;
     work.all_or_nothing = options.all_or_nothing;
+    take_fixed(masks, options.fixed, sorted.max_level, work);
     if (place_large_charts(work, sorted.large)) place_tiny_charts(work, sorted.tiny);
     return std::move(work.fill);
 }
@@ -83,11 +94,11 @@ PageFill fill_page(std::span<const ChartMask> masks, std::span<const std::uint32
         texels += masks[m].used;
     }
     const std::vector<Strategy> all = strategies(mask_of.size(), texels, options.orientations);
-    if (all.size() == 1) return fill(kinds, sorted, all[0], mask_of.size(), options, context, options.on_placed);
+    if (all.size() == 1) return fill(masks, kinds, sorted, all[0], mask_of.size(), options, context, options.on_placed);
     std::vector<PageFill> fills(all.size());
     fills[0].spots.resize(mask_of.size());  // where cancelled before it began
     parallel_for(context, all.size(), 1, [&](const ChunkRange& range) {
-        fills[range.index] = fill(kinds, sorted, all[range.index], mask_of.size(), options, context, {});
+        fills[range.index] = fill(masks, kinds, sorted, all[range.index], mask_of.size(), options, context, {});
     });
     std::size_t best = 0;
     for (std::size_t i = 1; i < fills.size(); ++i)

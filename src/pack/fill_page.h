@@ -19,11 +19,17 @@ enum class Orientations : std::uint8_t {
     eight,      // all of all charts but those that are not worth it: see worth_turning() in page_work.h
 };
 
+// Lies on the page and stays there.
+struct FixedMask {
+    std::uint32_t mask = 0, x = 0, y = 0;  // into the masks; top left corner
+};
+
 struct FillOptions {
     std::uint32_t width = 0;   // texels, 1 .. FreeMap::kMaxWidth
     std::uint32_t height = 0;  // most rows; 0: as many as it takes
     Orientations orientations = Orientations::automatic;
-    bool all_or_nothing = false;  // stops at the first large chart that has no place
+    bool all_or_nothing = false;            // stops at the first large chart that has no place
+    std::span<const FixedMask> fixed = {};  // what is there already: not counted in PageFill, but for its height
     // Charts placed so far: told often, on the calling thread; not where several strategies are tried at once.
     std::function<void(std::size_t placed)> on_placed;
 };
