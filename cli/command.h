@@ -22,6 +22,7 @@ int fail(const Error& error, const std::string& command);
 using Run = std::function<int()>;
 Run add_info(CLI::App& app);
 Run add_bake(CLI::App& app);
+Run add_atlas(CLI::App& app);
 Run add_render(CLI::App& app);
 Run add_compare(CLI::App& app);
 Run add_pack(CLI::App& app);
@@ -45,6 +46,19 @@ Result<Size> parse_size(const std::string& text, const std::string& option);
 // "4G", "512M", "100000". Error: usage.
 Result<std::uint64_t> parse_bytes(const std::string& text, const std::string& option);
 
+// How many texels, on which pages, and which charts: common to bake and atlas.
+class TexelOptions {
+public:
+    void declare(CLI::App& app);
+    // Fills preset, density, resolution, largest page, TEXCOORD_1 and reads the layout to keep. Errors: usage, and
+    // those of the file.
+    Status read(BakeOptions& options) const;
+
+private:
+    std::string preset_ = "medium", resolution_, uv1_ = "automatic", atlas_;
+    BakeOptions values_;
+};
+
 // Light and transport options, common to bake and render.
 class LightOptions {
 public:
@@ -62,6 +76,9 @@ private:
     std::string sky_, sun_direction_, sun_color_ = "1,1,1", include_ = "direct,sky,indirect";
     BakeOptions values_;
 };
+
+// How much of a layout stayed.
+void print_kept(std::uint64_t kept, std::uint64_t charts, const AtlasRecord& record);
 
 class Interrupt;
 

@@ -10,6 +10,7 @@
 #include "base/cancelled.h"
 #include "base/progress_parts.h"
 #include "base/try.h"
+#include "chart/chart_set.h"
 #include "command.h"
 #include "image/tonemap.h"
 #include "interrupt.h"
@@ -24,11 +25,12 @@ namespace lumel::cli {
 namespace {
 
 struct Options {
-    std::string scene, output, resolution, max_memory, progress;
-    std::string preset = "medium", uv1 = "automatic", integrator = "auto", guide = "auto", stop, denoise = "auto";
+    std::string scene, output, max_memory, progress;
+    std::string integrator = "auto", guide = "auto", stop, denoise = "auto";
     std::uint32_t views = 2, view_samples = 32;
     std::optional<double> error, confidence, time;
     BakeOptions values;
+    TexelOptions texels;
     LightOptions light;
 };
 
@@ -39,21 +41,10 @@ constexpr std::uint32_t kViewGutter = 4;  // pixels between truth and bake
 Result<BakeOptions> read_options(const Options& options) {
     BakeOptions out = options.values;
     LUMEL_TRY_STATUS(options.light.read(out));
-    if (!options.resolution.empty()) {
-        LUMEL_TRY(const Size size, parse_size(options.resolution, "--resolution"));
-        out.resolution_width = size.width;
-        out.resolution_height = size.height;
-    }
+    LUMEL_TRY_STATUS(options.texels.read(out));
     if (!options.max_memory.empty()) {
         LUMEL_TRY(out.max_memory_bytes, parse_bytes(options.max_memory, "--max-memory"));
     }
-    out.preset = options.preset == "preview"  ? Preset::preview
-                 : options.preset == "medium" ? Preset::medium
-                                              : Preset::production;
-    out.uv1 = options.uv1 == "scene"    ? Uv1Choice::scene
-              : options.uv1 == "mesh"   ? Uv1Choice::mesh
-              : options.uv1 == "ignore" ? Uv1Choice::ignore
-                                        : Uv1Choice::automatic;
     if (options.denoise != "auto") out.denoise = options.denoise == "on";
     // An error to reach is asked for by its name alone.
     const std::string stop = !options.stop.empty() ? options.stop : options.error ? "error" : "fixed";
@@ -183,7 +174,9 @@ Status run(const Options& options) {
     LUMEL_TRY(BakeWriter writer, BakeWriter::create(options.output, loaded, bake_options, context));
     run_context.interrupt().set_cleaner([folder = writer.folder()] { remove_folder(folder); });
     BakeSink sink;
+    std::uint64_t kept = 0;
     sink.layout = [&](const WorldGeometry& geometry, const ChartSet& charts, const Atlas& atlas) {
+        kept = atlas.kept;
         return writer.layout(geometry, charts, atlas);
     };
     sink.page = [&](const Lightmap& page) { return writer.page(page); };
@@ -203,6 +196,7 @@ Status run(const Options& options) {
     LUMEL_TRY_STATUS(writer.commit());
     run_context.finish();
     print_summary(report, options.output);
+    if (bake_options.atlas) print_kept(kept, report.charts, *bake_options.atlas);
     print_reached(report, bake_options);
     print_files(options.output, options.views);
     return success();
@@ -215,26 +209,13 @@ Run add_bake(CLI::App& app) {
     BakeOptions& values = options->values;
     app.add_option("SCENE", options->scene, "glTF scene: .glb or .gltf")->required();
     app.add_option("-o,--output", options->output, "Output folder; appears whole or not at all")->required();
-    app.add_option("--preset", options->preset,
-                   "preview, medium or production: texels and samples where not asked otherwise")
-        ->check(CLI::IsMember({"preview", "medium", "production"}));
+    options->texels.declare(app);
     app.add_option("--views", options->views, "Camera views rendered beside the truth")->check(CLI::Range(0u, 16u));
 
     app.add_option("--view-samples", options->view_samples, "Paths per pixel of those views")
         ->check(CLI::Range(1u, 1u << 16));
 
     const std::string texels = "Texels";
-    app.add_option("--texels-per-metre", values.texels_per_metre, "Density (0: from the preset's texel budget)")
-        ->check(between(0.0, 1e6))
-        ->group(texels);
-    app.add_option("--resolution", options->resolution, "WxH of the one page")->check(not_empty())->group(texels);
-    app.add_option("--max-page", values.max_page, "Largest page edge in texels")
-        ->check(CLI::Range(64u, 16384u))
-        ->group(texels);
-    app.add_option("--uv1", options->uv1,
-                   "TEXCOORD_1: automatic, scene (keep as one atlas), mesh (keep charts, repack), ignore")
-        ->check(CLI::IsMember({"automatic", "scene", "mesh", "ignore"}))
-        ->group(texels);
     app.add_option("--denoise", options->denoise, "auto (previews only), on or off: smooth the noise on the surface")
         ->check(CLI::IsMember({"auto", "on", "off"}))
         ->group(texels);

@@ -67,6 +67,7 @@ int main(int argc, char** argv) {
     };
     add("info", "What Lumel sees in a scene", add_info);
     add("bake", "Bake a scene's lighting", add_bake);
+    add("atlas", "Unwrap and pack a scene, without light", add_atlas);
     add("render", "Path-traced picture of a scene, or the same view lit by a bake", add_render);
     add("compare", "How far two images are apart", add_compare);
     add("pack", "Pack raw chart masks into an atlas", add_pack);

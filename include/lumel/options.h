@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -25,6 +26,8 @@ struct BakeOptions;
 // Samples per texel that are taken at most. Where neither --samples says so nor all texels take the same, eight times
 // those of the preset.
 std::uint32_t sample_budget(const BakeOptions& options);
+
+struct AtlasRecord;  // chart/atlas_record.h
 
 enum class Uv1Choice : std::uint8_t { automatic, scene, mesh, ignore };
 
@@ -71,6 +74,8 @@ struct BakeOptions {
     std::uint32_t max_page = 4096;                              // largest page edge; 64..16384
     double texels_per_metre = 0.0;                              // 0: from the preset's texel budget
     Uv1Choice uv1 = Uv1Choice::automatic;
+    // The layout of an earlier bake (read_atlas_record()): charts that are still the same keep their places. None: new.
+    std::shared_ptr<const AtlasRecord> atlas;
     std::optional<bool> denoise;  // post/denoise.h; without a value: the preset's
     std::uint32_t dilate = 2;     // rings of texels filled around charts, 0..64
     // Light

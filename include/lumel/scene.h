@@ -92,6 +92,9 @@ struct Instance {
     NodeClass node_class = NodeClass::lightmap;
     float density_scale = 1.0f;   // times the texel density of the bake
     bool class_is_asked = false;  // by the file or the sidecar: bad charts do not change it
+    // Hash of the names of the nodes from the root down to this one: which object this is, in an edited file, too. Need
+    // not be unique. Changes no light.
+    std::uint64_t path_hash = 0;
 };
 
 // ---- Lights ---------------------------------------------------------------------------------------------------------

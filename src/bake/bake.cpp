@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "bake/chart_options.h"
 #include "bake/memory.h"
 #include "bake/sample_plan.h"
 #include "bake/stage_timer.h"
@@ -34,27 +35,6 @@
 
 namespace lumel {
 namespace {
-
-Uv1Policy uv1_policy(Uv1Choice choice) {
-    switch (choice) {
-        case Uv1Choice::automatic: return Uv1Policy::automatic;
-        case Uv1Choice::scene: return Uv1Policy::scene;
-        case Uv1Choice::mesh: return Uv1Policy::mesh;
-        case Uv1Choice::ignore: return Uv1Policy::ignore;
-    }
-    return Uv1Policy::automatic;
-}
-
-ChartOptions chart_options(const BakeOptions& options) {
-    ChartOptions out;
-    out.uv1 = uv1_policy(options.uv1);
-    out.resolution_width = options.resolution_width;
-    out.resolution_height = options.resolution_height;
-    out.max_page = options.max_page;
-    out.texels_per_metre = options.texels_per_metre;
-    out.texel_budget = preset_values(options.preset).texel_budget;
-    return out;
-}
 
 // Texels that are shared out where no density is asked: those of the one page, or the preset's.
 double texel_budget(const BakeOptions& options) {
@@ -85,14 +65,14 @@ std::uint32_t edge_that_fits(std::uint32_t edge, std::uint64_t memory, unsigned 
 Result<Atlas> make_atlas_within_memory(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts,
                                        ChartOptions options, std::uint32_t cell_samples, std::uint64_t max_memory,
                                        BakeReport& report, Context& context) {
-    const bool one_page = charts.scene_wide || options.resolution_width != 0;
+    const bool one_page = charts.scene_wide || options.resolution_width != 0, is_kept = options.previous != nullptr;
     const Diagnostics before = context.diagnostics;
     for (;;) {
         context.diagnostics = before;  // what a layout that is given up had to say is of no interest
         LUMEL_TRY(Atlas atlas, make_atlas(scene, geometry, charts, options, context));
         report.predicted_memory_bytes = bake_memory(scene, geometry, atlas, cell_samples, context.threads());
         if (max_memory == 0 || report.predicted_memory_bytes <= max_memory) return atlas;
-        if (one_page || options.max_page <= kSmallestPage) break;
+        if (one_page || is_kept || options.max_page <= kSmallestPage) break;
         std::uint64_t kept = scene_memory(scene, geometry, atlas);
         if (cell_samples > 0) {
             const CellMemory cells = cell_memory(geometry, atlas, cell_samples);
@@ -102,8 +82,10 @@ Result<Atlas> make_atlas_within_memory(const Scene& scene, const WorldGeometry& 
         const std::uint64_t left = max_memory > kept ? max_memory - kept : 0;
         options.max_page = edge_that_fits(options.max_page / 2, left, context.threads());
     }
-    std::string remedy = one_page ? "raise --max-memory, or lower --resolution: a single page cannot be split"
-                                  : "raise --max-memory, or lower --texels-per-metre or --threads";
+    std::string remedy = is_kept
+                             ? "raise --max-memory, or leave out --atlas: pages of a layout that is kept stay as large"
+                         : one_page ? "raise --max-memory, or lower --resolution: a single page cannot be split"
+                                    : "raise --max-memory, or lower --texels-per-metre or --threads";
     if (cell_samples > 0) remedy += "; --integrator paths needs less";
     return Error{ErrorCode::out_of_memory,
                  "this bake is predicted to need about " + megabytes(report.predicted_memory_bytes) +

@@ -1,15 +1,19 @@
 // make_atlas: how large each chart is drawn and where it lies.
 #include <algorithm>
+#include <array>
 #include <cstdio>
+#include <span>
 #include <string>
 
 #include "base/cancelled.h"
 #include "base/check.h"
 #include "base/try.h"
+#include "chart/atlas_record.h"
 #include "chart/chart_set.h"
 #include "chart/density.h"
 #include "chart/kept_layout.h"
 #include "chart/pack.h"
+#include "chart/pack_around.h"
 
 namespace lumel {
 namespace {
@@ -28,10 +32,12 @@ Atlas kept_atlas(const Scene& scene, const WorldGeometry& geometry, const ChartS
                  const ChartOptions& options) {
     Atlas atlas;
     atlas.first_placement = placement_ranges(scene, charts);
-    const AtlasPage page = kept_page(scene, geometry, charts, options);
+    const AtlasPage page =
+        options.previous ? options.previous->pages.front() : kept_page(scene, geometry, charts, options);
     atlas.pages.push_back(page);
     const ChartPlacement placement{0, {static_cast<float>(page.width), static_cast<float>(page.height)}, {}};
     atlas.placements.assign(atlas.first_placement.back(), placement);
+    if (options.previous) atlas.kept = atlas.placements.size();
     return atlas;
 }
 
@@ -68,9 +74,13 @@ public:
         LUMEL_CHECK(atlas.first_placement.back() == instances_.size());
         if (instances_.empty()) return atlas;
         const bool fixed = options_.resolution_width != 0;
-        LUMEL_TRY_STATUS(fixed ? fit_resolution() : fill_pages());
+        LUMEL_TRY_STATUS(options_.previous ? keep_previous(*options_.previous)
+                         : fixed           ? fit_resolution()
+                                           : fill_pages());
+        atlas.kept = kept_;
         atlas.texels_per_metre = sized_.reached;
         atlas.least_texels_per_metre = sized_.least;
+        atlas.density = density_;
         for (const PackPage& page : packing_.pages) atlas.pages.push_back({page.width * cell(), page.height * cell()});
         if (fixed) atlas.pages.front() = {options_.resolution_width, options_.resolution_height};
         for (std::size_t k = 0; k < instances_.size(); ++k) atlas.placements.push_back(placement(k));
@@ -118,6 +128,40 @@ private:
         return no_room();
     }
 
+    // What is still the same stays where it was, at the density of then; the rest goes around it.
+    Status keep_previous(const AtlasRecord& record) {
+        const bool fixed = options_.resolution_width != 0;
+        const std::uint32_t most_x = fixed ? options_.resolution_width : options_.max_page;
+        const std::uint32_t most_y = fixed ? options_.resolution_height : options_.max_page;
+        const SizeLimit limit = SizeLimit::of_page(most_x, most_y, options_.masks);
+        if (limit.width < 2 || limit.height < 2) return no_room();
+        density_ = record.density;
+        std::vector<std::uint32_t> found = find_in_record(record, chart_names(scene_, charts_));
+        std::vector<std::array<std::uint32_t, 2>> sizes(instances_.size());
+        std::vector<PackSpot> spots(instances_.size(), {kNone, 0, 0});
+        for (std::size_t k = 0; k < instances_.size(); ++k) {
+            if (found[k] == kNone) continue;
+            const AtlasRecord::Chart& then = record.charts[found[k]];
+            if (!has_size(charts_, instances_[k], density_, limit, then.box.width, then.box.height)) continue;
+            sizes[k] = {then.box.width, then.box.height};
+            spots[k] = {then.page, then.box.x / cell(), then.box.y / cell()};
+        }
+        if (!draw(limit, sizes)) return cancelled_error();
+        std::vector<PackPage> pages;
+        for (const AtlasPage& page : record.pages) pages.push_back({page.width / cell(), page.height / cell(), 0});
+        if (const std::size_t dropped = drop_conflicts(sized_.masks, items(), pages, spots); dropped > 0)
+            context_.diagnostics.add("atlas-conflict",
+                                     "charts of the layout to keep lie on top of each other or off their page: they "
+                                     "were packed anew",
+                                     record.where, dropped);
+        for (const PackSpot& spot : spots) kept_ += spot.page != kNone ? 1 : 0;
+        packing_ = pack_around(sized_.masks, items(), spots, pages, fixed ? 0 : options_.max_page / cell(), context_);
+        if (context_.cancelled()) return cancelled_error();
+        if (!packing_.complete) return no_room();
+        report_clamped();
+        return success();
+    }
+
     Result<bool> try_resolution(SizeLimit limit) {
         if (!draw(limit)) return cancelled_error();
         if (static_cast<double>(sized_.used) > page_texels()) return false;
@@ -140,12 +184,13 @@ private:
         return {ErrorCode::usage,
                 "the " + std::to_string(instances_.size()) + " charts do not fit one page of " + size + " texels",
                 scene_.source,
-                options_.texels_per_metre > 0.0 ? "lower --texels-per-metre, or leave it out to have it solved"
-                                                : "ask for a larger --resolution, or none to have several pages"};
+                options_.previous                 ? "leave out --atlas: there is no room beside the charts that stay"
+                : options_.texels_per_metre > 0.0 ? "lower --texels-per-metre, or leave it out to have it solved"
+                                                  : "ask for a larger --resolution, or none to have several pages"};
     }
 
-    bool draw(SizeLimit limit) {
-        std::optional<SizedCharts> sized = size_charts(charts_, instances_, density_, limit, context_);
+    bool draw(SizeLimit limit, std::span<const std::array<std::uint32_t, 2>> fixed = {}) {
+        std::optional<SizedCharts> sized = size_charts(charts_, instances_, density_, limit, context_, fixed);
         if (sized) sized_ = std::move(*sized);
         return sized.has_value();
     }
@@ -170,12 +215,13 @@ private:
         const auto [width, height] = sized_.sizes[sized_.mask_of[k]];
         const Chart& chart = charts_.meshes[instances_[k].mesh].charts[instances_[k].chart];
         const PackSpot& spot = packing_.spots[k];
+        const std::uint32_t x = spot.x * cell(), y = spot.y * cell();
         const double inset = options_.masks.inset() - 0.5;
-        const TexelMap map =
-            fit_to_centres(chart.min, chart.max, width, height, spot.x * cell() + inset, spot.y * cell() + inset);
+        const TexelMap map = fit_to_centres(chart.min, chart.max, width, height, x + inset, y + inset);
         return {spot.page,
                 {static_cast<float>(map.scale_x), static_cast<float>(map.scale_y)},
-                {static_cast<float>(map.offset_x), static_cast<float>(map.offset_y)}};
+                {static_cast<float>(map.offset_x), static_cast<float>(map.offset_y)},
+                {x, y, width, height}};
     }
 
     const Scene& scene_;
@@ -186,12 +232,14 @@ private:
     double density_ = 0.0;
     SizedCharts sized_;
     Packing packing_;
+    std::uint64_t kept_ = 0;
 };
 
 }  // namespace
 
 Result<Atlas> make_atlas(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts,
                          const ChartOptions& options, Context& context) {
+    if (options.previous) LUMEL_TRY_STATUS(check_record(*options.previous, charts, options));
     if (charts.scene_wide) return kept_atlas(scene, geometry, charts, options);
     LUMEL_TRY_STATUS(check_masks(options));
     return AtlasMaker(scene, charts, options, context).run();

@@ -5,10 +5,14 @@
 
 namespace lumel {
 
-std::vector<std::uint32_t> chart_ids(const Scene& scene, const ChartSet& charts, const Atlas& atlas,
-                                     std::uint32_t page) {
+namespace {
+
+// Calls span(placement, instance, triangle of its mesh, y, x0, x1) for what the triangles of the page reach, in the
+// order of placements.
+template <class Span>
+void for_each_span(const Scene& scene, const ChartSet& charts, const Atlas& atlas, std::uint32_t page, double reach,
+                   const Span& span) {
     const AtlasPage& size = atlas.pages[page];
-    std::vector<std::uint32_t> ids(std::size_t{size.width} * size.height, kNone);
     for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
         const std::uint32_t first = atlas.first_placement[i];
         if (first == atlas.first_placement[i + 1]) continue;
@@ -17,17 +21,56 @@ std::vector<std::uint32_t> chart_ids(const Scene& scene, const ChartSet& charts,
             const ChartPlacement& place = atlas.placements[first + c];
             if (place.page != page) continue;
             const TexelMap map{place.scale.x, place.scale.y, place.offset.x, place.offset.y};
-            for (std::uint32_t k = 0; k < mesh.charts[c].count; ++k)
-                for_each_mask_span(mesh.uv[mesh.order[mesh.charts[c].first + k]], map, size.width, size.height,
-                                   [&](std::uint32_t y, std::uint32_t x0, std::uint32_t x1) {
-                                       for (std::uint32_t x = x0; x < x1; ++x) {
-                                           std::uint32_t& id = ids[std::size_t{y} * size.width + x];
-                                           if (id == kNone) id = first + c;
-                                       }
-                                   });
+            for (std::uint32_t k = 0; k < mesh.charts[c].count; ++k) {
+                const std::uint32_t triangle = mesh.order[mesh.charts[c].first + k];
+                for_each_mask_span(
+                    mesh.uv[triangle], map, size.width, size.height,
+                    [&](std::uint32_t y, std::uint32_t x0, std::uint32_t x1) {
+                        span(first + c, i, triangle, y, x0, x1);
+                    },
+                    reach);
+            }
         }
     }
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> chart_ids(const Scene& scene, const ChartSet& charts, const Atlas& atlas,
+                                     std::uint32_t page) {
+    const AtlasPage& size = atlas.pages[page];
+    std::vector<std::uint32_t> ids(std::size_t{size.width} * size.height, kNone);
+    for_each_span(scene, charts, atlas, page, kLookupReach,
+                  [&](std::uint32_t placement, std::uint32_t, std::uint32_t, std::uint32_t y, std::uint32_t x0,
+                      std::uint32_t x1) {
+                      for (std::uint32_t x = x0; x < x1; ++x) {
+                          std::uint32_t& id = ids[std::size_t{y} * size.width + x];
+                          if (id == kNone) id = placement;
+                      }
+                  });
     return ids;
+}
+
+TexelOwners texel_owners(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts, const Atlas& atlas,
+                         std::uint32_t page) {
+    const AtlasPage& size = atlas.pages[page];
+    const std::size_t texels = std::size_t{size.width} * size.height;
+    TexelOwners out{std::vector<std::uint32_t>(texels, kNone), std::vector<std::uint8_t>(texels, 0)};
+    const auto take = [&](double reach, std::uint8_t covered) {
+        for_each_span(scene, charts, atlas, page, reach,
+                      [&](std::uint32_t, std::uint32_t instance, std::uint32_t triangle, std::uint32_t y,
+                          std::uint32_t x0, std::uint32_t x1) {
+                          for (std::uint32_t x = x0; x < x1; ++x) {
+                              const std::size_t texel = std::size_t{y} * size.width + x;
+                              if (out.triangle[texel] != kNone) continue;
+                              out.triangle[texel] = geometry.first_triangle[instance] + triangle;
+                              out.covered[texel] = covered;
+                          }
+                      });
+    };
+    take(kTexelReach, 1);
+    take(kLookupReach, 0);
+    return out;
 }
 
 std::vector<std::uint8_t> color_ids(const std::vector<std::uint32_t>& ids) {

@@ -50,11 +50,20 @@ struct ChartSet {
     }
 };
 
+// Of a chart on its page, texels: where its mask begins, and how many its bounds span from centre to centre. Masks of
+// the usual rule begin there, too. Without size for a kept layout.
+struct ChartBox {
+    std::uint32_t x = 0, y = 0, width = 0, height = 0;
+
+    bool operator==(const ChartBox&) const = default;
+};
+
 // uv_texels = uv_chart * scale + offset, in texels of `page` (texel centres at i + 0.5).
 struct ChartPlacement {
     std::uint32_t page = kNone;  // kNone: not placed (no texels)
     Vec2 scale{1, 1};
     Vec2 offset{};
+    ChartBox box = {};
 };
 
 struct AtlasPage {
@@ -68,6 +77,9 @@ struct Atlas {
     // Reached: as asked or solved, lower where charts larger than a page had to shrink (mean over the area). The least
     // is that of the chart that shrank most. Both are 0 for a kept layout, which has many.
     double texels_per_metre = 0.0, least_texels_per_metre = 0.0;
+    // As asked or solved; 0 for a kept layout. What a later layout that keeps this one draws new charts at.
+    double density = 0.0;
+    std::uint64_t kept = 0;  // placements that are those of ChartOptions::previous
 
     // Lightmap UV of a triangle's corners in texels of the page, and that page; page kNone: no texels.
     struct TriangleUv {
@@ -81,6 +93,8 @@ struct Atlas {
                                               std::uint32_t mesh_triangle) const;
 };
 
+struct AtlasRecord;  // chart/atlas_record.h
+
 enum class Uv1Policy : std::uint8_t { automatic, scene, mesh, ignore };
 
 struct ChartOptions {
@@ -90,6 +104,8 @@ struct ChartOptions {
     double texels_per_metre = 0.0;                              // 0: solved from the budget
     double texel_budget = 250000.0;                             // texels, where no density is asked
     MaskRule masks;                                             // what the runtime's lookups touch; not of kept layouts
+    // Charts that are still the same keep their places (chart/atlas_record.h). None: all are packed anew.
+    const AtlasRecord* previous = nullptr;
 };
 
 // Two triangles of a TEXCOORD_1 that lie on top of each other.
@@ -106,8 +122,9 @@ struct UvOverlap {
 Result<ChartSet> make_charts(const Scene& scene, const WorldGeometry& geometry, const ChartOptions& options,
                              Context& context);
 
-// Places the charts of every lightmap instance. Errors: usage where they cannot fit the asked resolution, and where the
-// masks are of a rule that cannot be, or the resolution is no multiple of its cells.
+// Places the charts of every lightmap instance. Errors: usage where they cannot fit the asked resolution, where the
+// masks are of a rule that cannot be, or the resolution is no multiple of its cells, and where the options do not allow
+// to keep the previous layout.
 // Diagnostics: "chart-clamped" (nodes with charts larger than a page, and the density that is left to them).
 Result<Atlas> make_atlas(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts,
                          const ChartOptions& options, Context& context);

@@ -145,7 +145,8 @@ std::vector<ChartInstance> chart_instances(const Scene& scene, const ChartSet& c
 }
 
 std::optional<SizedCharts> size_charts(const ChartSet& charts, const std::vector<ChartInstance>& instances,
-                                       double texels_per_metre, SizeLimit limit, Context& context) {
+                                       double texels_per_metre, SizeLimit limit, Context& context,
+                                       std::span<const std::array<std::uint32_t, 2>> fixed) {
     SizedCharts sized;
     std::vector<Drawing> wanted;
     wanted.reserve(instances.size());
@@ -153,6 +154,10 @@ std::optional<SizedCharts> size_charts(const ChartSet& charts, const std::vector
     for (std::uint32_t k = 0; k < instances.size(); ++k) {
         const Sized chart = size_chart(charts, instances[k], texels_per_metre, limit);
         wanted.push_back(chart.drawing);
+        if (!fixed.empty() && fixed[k][0] != 0) {
+            wanted.back().width = fixed[k][0];
+            wanted.back().height = fixed[k][1];
+        }
         area += chart.area;
         area_reached += chart.area * chart.share;
         least = std::min(least, chart.share);
@@ -179,6 +184,24 @@ std::optional<SizedCharts> size_charts(const ChartSet& charts, const std::vector
         sized.covered += sized.masks[sized.mask_of.back()].covered;
     }
     return sized;
+}
+
+bool has_size(const ChartSet& charts, const ChartInstance& instance, double texels_per_metre, SizeLimit limit,
+              std::uint32_t width, std::uint32_t height) {
+    constexpr double kRounding = 0.51;
+    const Chart& chart = charts.meshes[instance.mesh].charts[instance.chart];
+    const double unsealed = charts.is_sealed(instance.instance, instance.chart) ? 1.0 / ChartSet::kSealedDensity : 1.0;
+    const auto fits = [](double length, std::uint32_t texels, std::uint32_t most) {
+        const double steps = std::clamp(length, 1.0, std::max(1.0, most - 1.0));
+        return std::abs(steps - (texels - 1.0)) <= kRounding;
+    };
+    for (const double share : {1.0, ChartSet::kSealedDensity}) {
+        const double density = texels_per_metre * unsealed * share;
+        if (fits((double{chart.max.x} - chart.min.x) * instance.rate_x * density, width, limit.width) &&
+            fits((double{chart.max.y} - chart.min.y) * instance.rate_y * density, height, limit.height))
+            return true;
+    }
+    return false;
 }
 
 double texels_at_unit_density(const ChartSet& charts, const std::vector<ChartInstance>& instances) {

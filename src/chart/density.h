@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "chart/chart_mask.h"
@@ -44,8 +45,15 @@ struct SizeLimit {
 
 // The box of a chart becomes a whole number of texel steps, the nearest to its size at this density but at least one: a
 // chart has 2 x 2 texels or more. Returns nothing where the context was cancelled.
+// `fixed`: beside the instances, sizes that are not to be asked about; 0 x 0, or none at all: as said.
 std::optional<SizedCharts> size_charts(const ChartSet& charts, const std::vector<ChartInstance>& instances,
-                                       double texels_per_metre, SizeLimit limit, Context& context);
+                                       double texels_per_metre, SizeLimit limit, Context& context,
+                                       std::span<const std::array<std::uint32_t, 2>> fixed = {});
+
+// Is this the size of a box that size_charts() gives such a chart, be it sealed or not? Within a hundredth of a texel,
+// for what a turned or moved instance differs in.
+bool has_size(const ChartSet& charts, const ChartInstance& instance, double texels_per_metre, SizeLimit limit,
+              std::uint32_t width, std::uint32_t height);
 
 // What a budget counts: all texels that masks take on a page, or only those that will be baked.
 enum class BudgetOf : std::uint8_t { page, baked };

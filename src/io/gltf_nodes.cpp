@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/hash.h"
 #include "base/try.h"
 
 namespace lumel {
@@ -138,6 +139,8 @@ private:
         node.parent = parents_[index];
         LUMEL_TRY(node.name, string_or(*json, "name", "", where(index)));
         node.named = !node.name.empty();
+        const std::uint64_t above = node.parent == kNone ? 0 : all[node.parent].path_hash;
+        node.path_hash = Hasher().pod(above).text(node.name).finish().low;
         if (!node.named) node.name = "node " + std::to_string(index);
         LUMEL_TRY_STATUS(read_parts(*json, node));
         LUMEL_TRY(const AffineD local, local_transform(*json, where(index)));

@@ -27,6 +27,7 @@ struct SceneNode {
     std::uint32_t parent = kNone;  // in nodes; kNone for roots
     std::string name;              // "node 12" where the file has none
     bool named = false;
+    std::uint64_t path_hash = 0;  // of the names from the root down, "" where there is none; instances share it
     AffineD world;
     std::optional<std::uint64_t> mesh, camera, light;
     bool skinned = false, animated = false;  // animated: it or an ancestor is the target of an animation

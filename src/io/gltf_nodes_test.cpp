@@ -54,6 +54,34 @@ TEST(GltfNodes, ParentsMoveTheirChildren) {
     EXPECT_EQ(loaded.scene().display.instances[1].baked_instance, 1u);
 }
 
+// The path of names says which object it is, wherever it stands in the file; copies of one name share it.
+TEST(GltfNodes, PathsAreOfNamesNotOfNumbers) {
+    const auto paths = [](bool with_another) {
+        GltfBuilder builder;
+        const std::size_t mesh = builder.triangle();
+        if (with_another) builder.node({{"name", "another"}, {"mesh", mesh}});
+        const std::size_t chair = builder.node({{"name", "chair"}, {"mesh", mesh}});
+        const std::size_t twin = builder.node({{"name", "chair"}, {"mesh", mesh}, {"translation", {1, 0, 0}}});
+        builder.node({{"name", "room"}, {"children", {chair, twin}}});
+        builder.node({{"name", "chair"}, {"mesh", mesh}});  // of no room
+        builder.node({{"mesh", mesh}});
+        const Loaded loaded(builder);
+        EXPECT_TRUE(loaded.result.ok()) << loaded.error();
+        std::vector<std::uint64_t> out;
+        for (const Instance& instance : loaded.scene().instances) out.push_back(instance.path_hash);
+        return out;
+    };
+    const auto before = paths(false);
+    auto after = paths(true);
+    ASSERT_EQ(before.size(), 4u);
+    ASSERT_EQ(after.size(), 5u);
+    after.erase(after.begin());
+    EXPECT_EQ(before, after);
+    EXPECT_EQ(before[0], before[1]);
+    EXPECT_NE(before[0], before[2]) << "the same name elsewhere in the tree";
+    EXPECT_NE(before[2], before[3]);
+}
+
 TEST(GltfNodes, NegativeScalesMirror) {
     GltfBuilder builder;
     builder.node({{"name", "left"}, {"mesh", builder.triangle()}, {"scale", {-1, 1, 1}}});

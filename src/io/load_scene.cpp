@@ -131,6 +131,7 @@ private:
             Instance instance;
             instance.name = instanced ? node.name + "#" + std::to_string(k) : node.name;
             instance.mesh = mesh->second;
+            instance.path_hash = node.path_hash;
             instance.transform = (instanced ? node.world * node.instances[k] : node.world).rounded();
             scene_.instances.push_back(std::move(instance));
             DisplayInstance display;

@@ -4,10 +4,9 @@
 #include <span>
 
 #include "encode/irradiance.h"
-#include "io/image_io.h"
 #include "io/json_write.h"
+#include "io/layout_json.h"
 #include "io/light_json.h"
-#include "io/node_class.h"
 
 namespace lumel {
 namespace {
@@ -65,38 +64,6 @@ Json pages_json(std::span<const ManifestPage> pages) {
     return out;
 }
 
-// Columns, then translation: glTF's order of a matrix without its last row.
-Json transform_json(const Affine& m) {
-    Json out = Json::array();
-    for (const Vec3 v : {m.columns[0], m.columns[1], m.columns[2], m.translation})
-        for (std::size_t i = 0; i < 3; ++i) out.push_back(json_number(v[i]));
-    return out;
-}
-
-Json instances_json(const Scene& scene, const ChartSet& charts, const Atlas& atlas) {
-    Json out = Json::array();
-    for (std::size_t i = 0; i < scene.instances.size(); ++i) {
-        const Instance& instance = scene.instances[i];
-        out.push_back({{"name", instance.name},
-                       {"class", class_name(charts.class_of(scene, i))},
-                       {"mesh", instance.mesh},
-                       {"transform", transform_json(instance.transform)},
-                       {"charts", {atlas.first_placement[i], atlas.first_placement[i + 1]}}});
-    }
-    return out;
-}
-
-// One array per member: hundreds of thousands of charts stay readable by machines.
-Json charts_json(const Atlas& atlas) {
-    Json page = Json::array(), scale = Json::array(), offset = Json::array();
-    for (const ChartPlacement& placement : atlas.placements) {
-        page.push_back(placement.page == kNone ? Json(nullptr) : Json(placement.page));
-        scale.push_back(json_array(placement.scale));
-        offset.push_back(json_array(placement.offset));
-    }
-    return {{"page", std::move(page)}, {"scale", std::move(scale)}, {"offset", std::move(offset)}};
-}
-
 Json frame_json() {
     return {{"space", "world"},
             {"handedness", "right"},
@@ -132,12 +99,14 @@ Json manifest_json(const ManifestInput& in) {
                     {"indirect_scale", in.options.indirect_scale}};
     out["denoised"] = is_denoised(in.options);
     out["texels_per_metre"] = in.atlas.texels_per_metre;
+    out["density"] = in.atlas.density;
+    out["kept_charts"] = in.atlas.kept;
     out["scene_wide_uvs"] = in.charts.scene_wide;
     out["figures"] = {{"estimated_nrmse", number(in.report.estimated_nrmse)},
                       {"mean_irradiance", in.report.mean_irradiance}};
     out["pages"] = pages_json(in.pages);
     out["instances"] = instances_json(in.scene, in.charts, in.atlas);
-    out["charts"] = charts_json(in.atlas);
+    out["charts"] = charts_json(in.scene, in.charts, in.atlas);
     return out;
 }
 
@@ -239,30 +208,14 @@ Json report_json(const ManifestInput& in, const Diagnostics& diagnostics) {
     return out;
 }
 
-// A file name need not be UTF-8; JSON must.
-Status write_json(const std::filesystem::path& path, const Json& json, int indent) {
-    std::string text = json.dump(indent, ' ', false, Json::error_handler_t::replace);
-    text += '\n';
-    return write_file(path, std::as_bytes(std::span(text)));
-}
-
 }  // namespace
 
 Status write_manifest(const ManifestInput& input) {
-    // Indented, the arrays of charts would take a line per number.
-    const Json json = manifest_json(input);
-    std::string text = "{";
-    for (const auto& [key, value] : json.items()) {
-        const bool small = key != "charts" && key != "instances";
-        text += text.size() > 1 ? ",\n" : "\n";
-        text += ' ' + Json(key).dump() + ": " + value.dump(small ? 1 : -1, ' ', false, Json::error_handler_t::replace);
-    }
-    text += "\n}\n";
-    return write_file(input.folder / kManifestFile, std::as_bytes(std::span(text)));
+    return write_with_long_arrays(input.folder / kManifestFile, manifest_json(input), {"charts", "instances"});
 }
 
 Status write_report(const ManifestInput& input, const Diagnostics& diagnostics) {
-    return write_json(input.folder / kReportFile, report_json(input, diagnostics), 1);
+    return write_json(input.folder / kReportFile, report_json(input, diagnostics));
 }
 
 }  // namespace lumel

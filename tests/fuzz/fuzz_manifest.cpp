@@ -1,14 +1,42 @@
 // Any text as the manifest of an output folder: the masters that it names, the light that it records, which lights a
-// scene.
+// scene, the layout that it records, which a level keeps.
+#include <algorithm>
+#include <cstdio>
+
 #include "base/check.h"
 #include "fuzz/seed_corpus.h"
+#include "io/atlas_record_read.h"
 #include "io/light_json.h"
 #include "io/light_record.h"
 #include "io/master.h"
 #include "lumel/bake.h"
 #include "scene/world_geometry.h"
+#include "support/load_gltf.h"
 
 namespace {
+
+// A triangle of one metre, in one chart.
+struct Level {
+    Level() {
+        scene = loaded.scene();
+        geometry = lumel::flatten(scene, loaded.context).value();
+        charts = lumel::make_charts(scene, geometry, {}, loaded.context).value();
+    }
+    static lumel::test::GltfBuilder built() {
+        lumel::test::GltfBuilder builder;
+        builder.node({{"name", "one"}, {"mesh", builder.triangle()}});
+        return builder;
+    }
+    lumel::test::Loaded loaded{built()};
+    lumel::Scene scene;
+    lumel::WorldGeometry geometry;
+    lumel::ChartSet charts;
+};
+
+const Level& level() {
+    static const Level the_one;
+    return the_one;
+}
 
 std::vector<std::byte> seed(const lumel::SkyOptions& sky, const lumel::SunOptions& sun, const lumel::Include& include) {
     lumel::Json manifest{{"generator", "Lumel"}, {"input_hash", "0123456789abcdef"}};
@@ -18,7 +46,36 @@ std::vector<std::byte> seed(const lumel::SkyOptions& sky, const lumel::SunOption
                          {"direct_scale", 2.0},
                          {"indirect_scale", 0.5}};
     manifest["pages"].push_back({{"width", 8}, {"height", 16}, {"files", {{"master", {{"file", "master_0.exr"}}}}}});
+    manifest["density"] = 8.0;
+    manifest["scene_wide_uvs"] = false;
+    const lumel::ChartName name = lumel::chart_names(level().scene, level().charts)[0];
+    char id[17];
+    std::snprintf(id, sizeof id, "%016llx", static_cast<unsigned long long>(name.id));
+    manifest["instances"].push_back({{"transform", {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}}, {"charts", {0, 1}}});
+    manifest["charts"] = {{"id", {id}}, {"page", {0}}, {"box", {{0, 2, 8, 8}}}};
     return lumel::fuzz::bytes_of(manifest.dump());
+}
+
+// A layout that was read keeps what it can of it: all charts are placed, on pages that have not shrunk.
+void keep_layout(const lumel::AtlasRecord& record) {
+    lumel::Context context(1);
+    lumel::ChartOptions options;
+    options.max_page = 16384;
+    options.previous = &record;
+    // A million times the texels of a page would be drawn.
+    if (record.density > 200.0 || record.pages.size() > 16) return;
+    for (const lumel::AtlasPage& page : record.pages)
+        if (page.width * page.height > 1u << 20) return;
+    const auto atlas = lumel::make_atlas(level().scene, level().geometry, level().charts, options, context);
+    if (!atlas.ok()) return;
+    for (std::size_t p = 0; p < std::min(record.pages.size(), atlas->pages.size()); ++p)
+        LUMEL_CHECK(atlas->pages[p].width == record.pages[p].width && atlas->pages[p].height >= record.pages[p].height,
+                    p);
+    for (const lumel::ChartPlacement& place : atlas->placements) {
+        LUMEL_CHECK(place.page < atlas->pages.size(), place.page);
+        LUMEL_CHECK(place.box.x + place.box.width <= atlas->pages[place.page].width, place.box.x);
+        LUMEL_CHECK(place.box.y + place.box.height <= atlas->pages[place.page].height, place.box.y);
+    }
 }
 
 }  // namespace
@@ -44,6 +101,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (masters.ok())
         for (const lumel::MasterFile& page : masters->pages) LUMEL_CHECK(page.file.parent_path() == "out");
     const auto record = lumel::parse_light_record({reinterpret_cast<const char*>(data), size}, "out", "fuzz.json");
+    const auto atlas = lumel::parse_atlas_record({reinterpret_cast<const char*>(data), size}, "fuzz.json");
+    if (atlas.ok()) keep_layout(*atlas);
     if (!record.ok()) return 0;
     lumel::BakeOptions options;
     options.sky = record->sky;

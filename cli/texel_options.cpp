@@ -1,0 +1,57 @@
+// Options of density, pages and charts: what bake and atlas lay out alike.
+#include <cstdio>
+
+#include "base/try.h"
+#include "command.h"
+#include "io/atlas_record_read.h"
+
+namespace lumel::cli {
+
+void TexelOptions::declare(CLI::App& app) {
+    app.add_option("--preset", preset_,
+                   "preview, medium or production: texels, and samples of a bake, where not asked otherwise")
+        ->check(CLI::IsMember({"preview", "medium", "production"}));
+    const std::string group = "Texels";
+    app.add_option("--texels-per-metre", values_.texels_per_metre, "Density (0: from the preset's texel budget)")
+        ->check(between(0.0, 1e6))
+        ->group(group);
+    app.add_option("--resolution", resolution_, "WxH of the one page")->check(not_empty())->group(group);
+    app.add_option("--max-page", values_.max_page, "Largest page edge in texels")
+        ->check(CLI::Range(64u, 16384u))
+        ->group(group);
+    app.add_option("--uv1", uv1_,
+                   "TEXCOORD_1: automatic, scene (keep as one atlas), mesh (keep charts, repack), ignore")
+        ->check(CLI::IsMember({"automatic", "scene", "mesh", "ignore"}))
+        ->group(group);
+    app.add_option(
+           "--atlas", atlas_,
+           "manifest.json or atlas.json whose layout to keep: charts that are still the same stay where they were")
+        ->check(not_empty())
+        ->group(group);
+}
+
+Status TexelOptions::read(BakeOptions& out) const {
+    out.preset = preset_ == "preview" ? Preset::preview : preset_ == "medium" ? Preset::medium : Preset::production;
+    out.texels_per_metre = values_.texels_per_metre;
+    out.max_page = values_.max_page;
+    if (!resolution_.empty()) {
+        LUMEL_TRY(const Size size, parse_size(resolution_, "--resolution"));
+        out.resolution_width = size.width;
+        out.resolution_height = size.height;
+    }
+    out.uv1 = uv1_ == "scene"    ? Uv1Choice::scene
+              : uv1_ == "mesh"   ? Uv1Choice::mesh
+              : uv1_ == "ignore" ? Uv1Choice::ignore
+                                 : Uv1Choice::automatic;
+    if (!atlas_.empty()) {
+        LUMEL_TRY(out.atlas, read_atlas_record(atlas_));
+    }
+    return success();
+}
+
+void print_kept(std::uint64_t kept, std::uint64_t charts, const AtlasRecord& record) {
+    std::printf("%llu of %llu charts lie where %s has them\n", static_cast<unsigned long long>(kept),
+                static_cast<unsigned long long>(charts), record.where.c_str());
+}
+
+}  // namespace lumel::cli

@@ -1,0 +1,30 @@
+#include "bake/chart_options.h"
+
+namespace lumel {
+namespace {
+
+Uv1Policy uv1_policy(Uv1Choice choice) {
+    switch (choice) {
+        case Uv1Choice::automatic: return Uv1Policy::automatic;
+        case Uv1Choice::scene: return Uv1Policy::scene;
+        case Uv1Choice::mesh: return Uv1Policy::mesh;
+        case Uv1Choice::ignore: return Uv1Policy::ignore;
+    }
+    return Uv1Policy::automatic;
+}
+
+}  // namespace
+
+ChartOptions chart_options(const BakeOptions& options) {
+    ChartOptions out;
+    out.uv1 = uv1_policy(options.uv1);
+    out.resolution_width = options.resolution_width;
+    out.resolution_height = options.resolution_height;
+    out.max_page = options.max_page;
+    out.texels_per_metre = options.texels_per_metre;
+    out.texel_budget = preset_values(options.preset).texel_budget;
+    out.previous = options.atlas.get();
+    return out;
+}
+
+}  // namespace lumel
