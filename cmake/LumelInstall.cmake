@@ -7,6 +7,8 @@ install(EXPORT lumelTargets NAMESPACE lumel:: DESTINATION ${package_dir})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/lumel DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN *.h)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/THIRD_PARTY.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/shaders DESTINATION ${CMAKE_INSTALL_DATADIR}/lumel)
+
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/lumelConfig.cmake.in
   ${PROJECT_BINARY_DIR}/lumelConfig.cmake INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/lumelConfigVersion.cmake COMPATIBILITY SameMinorVersion)

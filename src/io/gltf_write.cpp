@@ -18,7 +18,8 @@
 namespace lumel {
 namespace {
 
-void write_root_extension(const GltfWriteInput& in, const std::vector<PageTexture>& textures, Json& root) {
+void write_root_extension(const GltfWriteInput& in, const std::vector<PageTexture>& textures, const ChartBuffer& charts,
+                          Json& root) {
     Json pages = Json::array();
     for (std::uint32_t p = 0; p < in.atlas.pages.size(); ++p)
         pages.push_back({{"width", in.atlas.pages[p].width},
@@ -37,6 +38,10 @@ void write_root_extension(const GltfWriteInput& in, const std::vector<PageTextur
                                               {"manifest", kManifestFile},
                                               {"geometry", in.geometry_hash},
                                               {"pages", std::move(pages)}};
+    if (charts.transforms != kNone) {
+        root["extensions"][kLightmapExtension]["transforms"] = charts.transforms;
+        root["extensions"][kLightmapExtension]["chartPages"] = charts.pages;
+    }
     add_to_list(root, "extensionsUsed", kLightmapExtension);
     root["asset"]["generator"] = "Lumel";
 }
@@ -54,9 +59,9 @@ Status write(const std::filesystem::path& path, const GltfWriteInput& in) {
         LUMEL_TRY(std::vector<Json> written, write_geometry(in.document, geometry, glb));
         primitives.push_back(std::move(written));
     }
-    write_lit_instances(in, plan, primitives, materials, glb);
+    const ChartBuffer charts = write_lit_instances(in, plan, primitives, materials, glb);
     if (in.include.direct) remove_baked_lights(in.document, in.scene, glb.root());
-    write_root_extension(in, textures, glb.root());
+    write_root_extension(in, textures, charts, glb.root());
     return glb.write(path);
 }
 

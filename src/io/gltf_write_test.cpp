@@ -169,9 +169,9 @@ TEST(WriteGltf, VerticesAreStoredOnceAndUvsPerInstance) {
     // 6 charts of 4 corners.
     EXPECT_EQ(open_accessor(*written.document, left["attributes"]["POSITION"])->count, 24u);
     EXPECT_EQ(written.element_count("meshes"), "2");
-    // The 8 positions of the file are gone: 6 accessors of the shared part (2 attributes, indices, 2 of the compact
-    // form, none of its own for triangles), and UVs and transforms of 2 instances.
-    EXPECT_EQ(written.element_count("accessors"), "9");
+    // The 8 positions of the file are gone: 5 accessors of the shared part (2 attributes, indices, 2 of the compact
+    // form, none of its own for triangles), UVs and transforms of 2 instances, and the transforms and pages of all.
+    EXPECT_EQ(written.element_count("accessors"), "11");
 }
 
 TEST(WriteGltf, PositionBoundsAreThoseOfTheSplitVertices) {

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "chart/atlas_record.h"
+#include "chart/chart_transform.h"
 #include "io/image_io.h"
 #include "io/json_write.h"
 #include "io/node_class.h"
@@ -57,13 +58,12 @@ Json charts_json(const Scene& scene, const ChartSet& charts, const Atlas& atlas)
         offset.push_back(json_array(placement.offset));
         box.push_back(b.width == 0 ? Json(nullptr) : Json({b.x, b.y, b.width, b.height}));
     }
-    Json id = Json::array();
+    Json id = Json::array(), transform = Json::array();
+    for (const Vec4& t : chart_transforms(atlas))
+        transform.push_back({json_number(t.x), json_number(t.y), json_number(t.z), json_number(t.w)});
     for (const ChartName& name : chart_names(scene, charts)) id.push_back(hex(name.id));
-    return {{"id", std::move(id)},
-            {"page", std::move(page)},
-            {"scale", std::move(scale)},
-            {"offset", std::move(offset)},
-            {"box", std::move(box)}};
+    return {{"id", std::move(id)},         {"page", std::move(page)},           {"scale", std::move(scale)},
+            {"offset", std::move(offset)}, {"transform", std::move(transform)}, {"box", std::move(box)}};
 }
 
 Status write_json(const std::filesystem::path& path, const Json& json) {

@@ -3,6 +3,7 @@
 #include <map>
 #include <set>
 
+#include "chart/chart_transform.h"
 #include "chart/lift.h"
 #include "io/instancing_expand.h"
 #include "io/json_edit.h"
@@ -23,9 +24,10 @@ public:
           root_(glb.root()),
           free_meshes_(plan.replaced_meshes),
           uv_view_(glb.reserve_view()),
-          transform_view_(glb.reserve_view()) {}
+          transforms_(chart_transforms(input.atlas)),
+          transform_view_(glb.add_view(std::as_bytes(std::span(transforms_)), ViewTarget::none)) {}
 
-    void write() {
+    ChartBuffer write() {
         const auto expanded = expand_instancing(in_.document, plan_.expanded_nodes, root_);
         for (const InstancePlan& plan : plan_.instances) {
             const DisplayInstance& display = in_.scene.display.instances[plan.display];
@@ -38,9 +40,9 @@ public:
             root_["nodes"][node]["extensions"][kLightmapExtension] = node_extension(display.baked_instance);
         }
         glb_.put_view(uv_view_, std::as_bytes(std::span(uvs_)), ViewTarget::vertices, sizeof(Vec2));
-        glb_.put_view(transform_view_, std::as_bytes(std::span(transforms_)), ViewTarget::none);
         for (const char* name : {kLightmapExtension, "KHR_materials_emissive_strength", "KHR_materials_specular"})
             add_to_list(root_, "extensionsUsed", name);
+        return chart_buffer();
     }
 
 private:
@@ -100,16 +102,21 @@ private:
     // Which baked instance this is, and where its charts lie: TEXCOORD_1 = chartUv * (x, y) + (z, w).
     Json node_extension(std::uint32_t instance) {
         const std::uint32_t first = in_.atlas.first_placement[instance], last = in_.atlas.first_placement[instance + 1];
-        const std::size_t offset = transforms_.size() * sizeof(Vec4);
-        for (std::uint32_t i = first; i < last; ++i) {
-            const ChartPlacement& place = in_.atlas.placements[i];
-            const AtlasPage size = place.page == kNone ? AtlasPage{1, 1} : in_.atlas.pages[place.page];
-            const float w = static_cast<float>(size.width), h = static_cast<float>(size.height);
-            transforms_.push_back({place.scale.x / w, place.scale.y / h, place.offset.x / w, place.offset.y / h});
-        }
         const std::uint32_t accessor = glb_.add_accessor(
-            GlbBuilder::accessor_json(transform_view_, offset, Component::float32, "VEC4", last - first));
-        return {{"instance", instance}, {"transforms", accessor}};
+            GlbBuilder::accessor_json(transform_view_, first * sizeof(Vec4), Component::float32, "VEC4", last - first));
+        return {{"instance", instance}, {"firstChart", first}, {"transforms", accessor}};
+    }
+
+    // The transforms of all instances in one, and the page of each.
+    ChartBuffer chart_buffer() {
+        std::vector<std::uint32_t> pages;
+        for (const ChartPlacement& place : in_.atlas.placements)
+            pages.push_back(place.page == kNone ? 0 : place.page);  // of no triangle that is seen
+        ChartBuffer out;
+        out.transforms = glb_.add_accessor(
+            GlbBuilder::accessor_json(transform_view_, 0, Component::float32, "VEC4", transforms_.size()));
+        out.pages = glb_.add_unsigned(pages, ViewTarget::none);
+        return out;
     }
 
     const GltfWriteInput& in_;
@@ -120,15 +127,18 @@ private:
     Json& root_;
     std::set<std::uint32_t> free_meshes_;  // of the replaced ones
     std::vector<Vec2> uvs_;                // of all instances
-    std::vector<Vec4> transforms_;         // of all instances
-    std::uint32_t uv_view_, transform_view_;
+    std::uint32_t uv_view_;
+    std::vector<Vec4> transforms_;  // of all instances, as Atlas::placements
+    std::uint32_t transform_view_;
 };
 
 }  // namespace
 
-void write_lit_instances(const GltfWriteInput& input, const LitMeshPlan& plan,
-                         const std::vector<std::vector<Json>>& primitives, LitMaterials& materials, GlbBuilder& glb) {
-    if (!plan.instances.empty()) InstanceWriter(input, plan, primitives, materials, glb).write();
+ChartBuffer write_lit_instances(const GltfWriteInput& input, const LitMeshPlan& plan,
+                                const std::vector<std::vector<Json>>& primitives, LitMaterials& materials,
+                                GlbBuilder& glb) {
+    if (plan.instances.empty()) return {};
+    return InstanceWriter(input, plan, primitives, materials, glb).write();
 }
 
 }  // namespace lumel

@@ -2,6 +2,7 @@
 // its materials and the transforms of its charts.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "io/glb_builder.h"
@@ -10,8 +11,15 @@
 
 namespace lumel {
 
+// Accessors with one entry per chart of each instance, in the order of Atlas::placements; kNone: nothing is lit.
+struct ChartBuffer {
+    std::uint32_t transforms = kNone;  // VEC4: chart_transforms()
+    std::uint32_t pages = kNone;       // unsigned integers
+};
+
 // `primitives`: of each of the plan's geometries (lit_geometry.h).
-void write_lit_instances(const GltfWriteInput& input, const LitMeshPlan& plan,
-                         const std::vector<std::vector<Json>>& primitives, LitMaterials& materials, GlbBuilder& glb);
+ChartBuffer write_lit_instances(const GltfWriteInput& input, const LitMeshPlan& plan,
+                                const std::vector<std::vector<Json>>& primitives, LitMaterials& materials,
+                                GlbBuilder& glb);
 
 }  // namespace lumel

@@ -1,0 +1,22 @@
+// Lightmap UVs of instances that share their vertices: each chart of each instance has a transform of its own in one
+// buffer (`transforms` of LUMEL_lightmap in scene.glb, `charts.transform` in manifest.json: docs/formats.md). A vertex
+// knows its chart and its place in it (`charts`, `chartUvs`), an instance where its charts begin (`firstChart`).
+// Based on: O'Donnell, "Precomputed Global Illumination in Frostbite" (2018), "Unpacking transforms in the shader".
+//
+//   StructuredBuffer<float4> lumel_charts;
+//   float2 uv = lumel_lightmap_uv(chart_uv, lumel_charts[lumel_chart_index(first_chart, chart)]);
+
+// Which entry of the buffer.
+uint lumel_chart_index(uint first_chart, uint chart) {
+    return first_chart + chart;
+}
+
+// Where that entry is in a texture of this width.
+uint2 lumel_chart_texel(uint index, uint width) {
+    return uint2(index % width, index / width);
+}
+
+// Lightmap UV, 0 to 1 over the page: what TEXCOORD_1 holds.
+float2 lumel_lightmap_uv(float2 chart_uv, float4 transform) {
+    return chart_uv * transform.xy + transform.zw;
+}
