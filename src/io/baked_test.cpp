@@ -157,7 +157,8 @@ TEST(ReadBaked, UvsThatAreNotFiniteAreRefused) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     auto bytes = read_file(f.folder / kSceneFile, 1 << 20).value();
     const auto old_bytes = std::as_bytes(std::span(&uv, 1)), new_bytes = std::as_bytes(std::span(&nan, 1));
-    const auto at = std::search(bytes.begin(), bytes.end(), old_bytes.begin(), old_bytes.end());
+    // The last of equal bytes: UVs are written last.
+    const auto at = std::find_end(bytes.begin(), bytes.end(), old_bytes.begin(), old_bytes.end());
     ASSERT_NE(at, bytes.end());
     std::copy(new_bytes.begin(), new_bytes.end(), at);
     ASSERT_TRUE(write_file(f.folder / kSceneFile, bytes).ok());
