@@ -13,7 +13,7 @@
 #include "load.h"
 #include "math/normal_quantile.h"
 #include "methods.h"
-#include "plot.h"
+#include "plot/plot.h"
 #include "reference.h"
 #include "score.h"
 

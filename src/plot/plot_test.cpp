@@ -1,12 +1,12 @@
-#include "plot.h"
+#include "plot/plot.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "plot_text.h"
+#include "plot/plot_text.h"
 
-namespace lumel::bench {
+namespace lumel {
 namespace {
 
 TEST(Plot, AxesRunFromOneRoundNumberToAnother) {
@@ -64,4 +64,4 @@ TEST(Plot, WordsHaveBoxes) {
 }
 
 }  // namespace
-}  // namespace lumel::bench
+}  // namespace lumel

@@ -1,10 +1,10 @@
-#include "plot_text.h"
+#include "plot/plot_text.h"
 
 #include <stb_easy_font.h>
 
 #include <algorithm>
 
-namespace lumel::bench {
+namespace lumel {
 
 std::vector<TextBox> text_boxes(const std::string& words) {
     struct Corner {
@@ -31,4 +31,4 @@ float text_width(const std::string& words) {
     return width;
 }
 
-}  // namespace lumel::bench
+}  // namespace lumel

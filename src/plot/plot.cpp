@@ -1,4 +1,4 @@
-#include "plot.h"
+#include "plot/plot.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,9 +7,9 @@
 #include <cstring>
 
 #include "lumel/vec.h"
-#include "plot_text.h"
+#include "plot/plot_text.h"
 
-namespace lumel::bench {
+namespace lumel {
 namespace {
 
 constexpr std::uint32_t kPanelWidth = 720, kPanelHeight = 540;
@@ -233,4 +233,4 @@ Image draw_plot(const std::vector<PlotPanel>& panels, std::size_t columns) {
     return std::move(canvas).finish();
 }
 
-}  // namespace lumel::bench
+}  // namespace lumel

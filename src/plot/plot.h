@@ -8,7 +8,7 @@
 
 #include "image/image.h"
 
-namespace lumel::bench {
+namespace lumel {
 
 struct PlotLine {
     std::string name;
@@ -32,4 +32,4 @@ std::vector<double> log_ticks(LogRange range);
 // everywhere.
 Image draw_plot(const std::vector<PlotPanel>& panels, std::size_t columns = 2);
 
-}  // namespace lumel::bench
+}  // namespace lumel

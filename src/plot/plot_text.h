@@ -6,7 +6,7 @@
 
 #include "lumel/vec.h"
 
-namespace lumel::bench {
+namespace lumel {
 
 struct TextBox {
     Vec2 low, high;  // in strokes: a capital letter is seven high; y runs down from the top of the line
@@ -16,4 +16,4 @@ struct TextBox {
 std::vector<TextBox> text_boxes(const std::string& words);
 float text_width(const std::string& words);
 
-}  // namespace lumel::bench
+}  // namespace lumel
