@@ -15,4 +15,5 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/lumelConfigVersion.cmake 
 install(FILES
   ${PROJECT_BINARY_DIR}/lumelConfig.cmake ${PROJECT_BINARY_DIR}/lumelConfigVersion.cmake
   ${PROJECT_SOURCE_DIR}/cmake/FindEmbree.cmake ${PROJECT_SOURCE_DIR}/cmake/FindTurboJpeg.cmake
+  ${PROJECT_SOURCE_DIR}/cmake/FindZstd.cmake
   DESTINATION ${package_dir})

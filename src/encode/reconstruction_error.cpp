@@ -64,12 +64,24 @@ bool is_between(Vec3 v, Vec3 a, Vec3 b) {
 
 }  // namespace
 
+std::vector<Numbers> solve_for_files(const Encoding& encoding, std::span<const TexelLight> light,
+                                     std::span<const Rotation> frames) {
+    std::vector<Numbers> out(light.size());
+    encoding.solve(light, out);
+    for (std::size_t i = 0; i < out.size() && encoding.rotate; ++i) encoding.rotate(out[i], transposed(frames[i]));
+    return out;
+}
+
 ReconstructionError measure(const Encoding& encoding, Storage storage, const MeasuredTexels& texels) {
+    std::vector<Numbers> stored = solve_for_files(encoding, texels.light, texels.frame);
+    for (Numbers& numbers : stored) quantise(encoding, storage, numbers);
+    return measure(encoding, stored, texels);
+}
+
+ReconstructionError measure(const Encoding& encoding, std::span<const Numbers> stored, const MeasuredTexels& texels) {
     const std::size_t n = texels.light.size();
     ReconstructionError out;
     if (n == 0) return out;
-    std::vector<Numbers> stored(n);  // as in files: rotated and rounded
-    encoding.solve(texels.light, stored);
     const auto local = [&](Numbers numbers, std::size_t i) {
         if (encoding.rotate) encoding.rotate(numbers, texels.frame[i]);
         return numbers;
@@ -77,8 +89,6 @@ ReconstructionError measure(const Encoding& encoding, Storage storage, const Mea
     std::vector<Sums> sums(n);
     double error = 0.0, truth = 0.0, at_normal = 0.0, irradiance = 0.0;
     for (std::size_t i = 0; i < n; ++i) {
-        if (encoding.rotate) encoding.rotate(stored[i], transposed(texels.frame[i]));
-        quantise(encoding, storage, stored[i]);
         const Numbers numbers = local(stored[i], i);
         sums[i] = compare(encoding, numbers, reference(texels.light[i]));
         error += sums[i].error;

@@ -28,5 +28,11 @@ struct ReconstructionError {
 
 // The reference is the irradiance that nine coefficients of light from above the horizon imply (hemisphere_fit.h).
 ReconstructionError measure(const Encoding& encoding, Storage storage, const MeasuredTexels& texels);
+// The same of numbers as files hold them: in the world frame where the encoding rotates, rounded, one of each texel.
+ReconstructionError measure(const Encoding& encoding, std::span<const Numbers> stored, const MeasuredTexels& texels);
+
+// The numbers of texels as files hold them, before they are rounded.
+std::vector<Numbers> solve_for_files(const Encoding& encoding, std::span<const TexelLight> light,
+                                     std::span<const Rotation> frames);
 
 }  // namespace lumel

@@ -1,11 +1,11 @@
 #include "io/encoded_page.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/cancelled.h"
 #include "base/parallel.h"
 #include "base/try.h"
+#include "encode/light_range.h"
 #include "encode/units.h"
 #include "io/image_io.h"
 #include "lumel/scene.h"
@@ -15,22 +15,13 @@ namespace {
 
 bool is_light(FieldKind kind) { return kind == FieldKind::light || kind == FieldKind::signed_light; }
 
-// As the bake's own files: below the largest half, and far enough above its smallest steps.
-bool halves_hold(const Encoding& encoding, const EncodedPage& page) {
-    constexpr float kLargest = 65000.0f;
-    constexpr double kSmallestMean = 0.006;
-    double sum = 0.0;
-    float largest = 0.0f;
-    std::size_t count = 0;
-    for (const Numbers& numbers : page.numbers)
-        for (std::size_t i = 0; i < encoding.fields.size(); ++i) {
-            if (!is_light(encoding.fields[i].kind)) continue;
-            const float size = std::fabs(numbers[i]);
-            largest = std::max(largest, size);
-            sum += i < 3 ? static_cast<double>(size) : 0.0;  // the first colour is the brightest
-            count += i < 3 ? 1 : 0;
-        }
-    return largest < kLargest && (largest == 0.0f || sum >= kSmallestMean * static_cast<double>(count));
+// As the bake's own files: the largest of all light, and the mean of the first colour, which is the brightest.
+bool halves_hold_page(const Encoding& encoding, const EncodedPage& page) {
+    LightRange range = light_range(page.numbers, 0, std::min<std::size_t>(3, encoding.fields.size()));
+    for (std::size_t i = 3; i < encoding.fields.size(); ++i)
+        if (is_light(encoding.fields[i].kind))
+            range.largest = std::max(range.largest, light_range(page.numbers, i, 1).largest);
+    return halves_hold(range);
 }
 
 }  // namespace
@@ -56,7 +47,7 @@ Result<EncodedPage> encode_page(const Encoding& encoding, const MasterPage& mast
 
 Result<std::string> write_encoded_page(const std::filesystem::path& file, const Encoding& encoding,
                                        const EncodedPage& page, Context& context) {
-    const ExrType type = halves_hold(encoding, page) ? ExrType::half : ExrType::full;
+    const ExrType type = halves_hold_page(encoding, page) ? ExrType::half : ExrType::full;
     std::vector<ExrChannelSource> channels;
     for (const Field& field : encoding.fields)
         channels.push_back({field.name, is_light(field.kind) ? type : ExrType::half});

@@ -2,20 +2,13 @@
 #pragma once
 
 #include <filesystem>
-#include <vector>
+#include <string>
 
-#include "encode/encoding.h"
+#include "encode/encoded_page.h"
 #include "io/master.h"
 #include "lumel/context.h"
 
 namespace lumel {
-
-// Numbers of the covered texels of a page, as files hold them: world frame where the encoding rotates.
-struct EncodedPage {
-    std::uint32_t width = 0, height = 0;
-    std::vector<std::uint32_t> texel_at;
-    std::vector<Numbers> numbers;
-};
 
 // The light of a texel in its tangent frame.
 TexelLight light_of_texel(const MasterPage& master, std::size_t texel);

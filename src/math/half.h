@@ -36,4 +36,12 @@ inline float round_to_half(float value) {
     return std::copysign(sum - magic, value);
 }
 
+// The 16-bit code of that number.
+inline std::uint16_t half_code(float value) {
+    const float rounded = round_to_half(value), size = std::fabs(rounded);
+    const std::uint32_t magnitude = size < 0x1p-14f ? static_cast<std::uint32_t>(size * 0x1p24f)
+                                                    : (std::bit_cast<std::uint32_t>(size) - 0x38000000u) >> 13;
+    return static_cast<std::uint16_t>((std::signbit(rounded) ? 0x8000u : 0u) | magnitude);
+}
+
 }  // namespace lumel

@@ -32,5 +32,12 @@ TEST(Half, HoldsItsOwnCodes) {
     EXPECT_TRUE(std::isnan(half_to_float(0x7C01)));
 }
 
+TEST(Half, EveryFiniteCodeIsThatOfItsNumber) {
+    for (std::uint32_t code = 0; code < 0x10000; ++code) {
+        if ((code & 0x7C00u) == 0x7C00u) continue;  // infinities and NaN
+        ASSERT_EQ(half_code(half_to_float(static_cast<std::uint16_t>(code))), code);
+    }
+}
+
 }  // namespace
 }  // namespace lumel
