@@ -6,6 +6,7 @@
 #include "base/try.h"
 #include "encode/units.h"
 #include "io/image_io.h"
+#include "io/json_write.h"
 #include "io/light_json.h"
 #include "io/page_files.h"
 
@@ -24,19 +25,55 @@ const char* kind_name(FieldKind kind) {
     return "";
 }
 
+// What the textures are.
+Json textures_json(const Encoding& encoding, const std::vector<StoredTexture>& layout) {
+    Json out = Json::array();
+    for (const StoredTexture& texture : layout) {
+        const TexelFormatInfo& info = format_info(texture.format);
+        Json channels = Json::array();
+        for (const Field& field : encoding.fields.subspan(texture.first, texture.count)) channels.push_back(field.name);
+        Json entry{{"name", texture.name}, {"channels", channels}, {"texels", info.name}};
+        if (info.vk_format != 0) {
+            entry["vk_format"] = info.vk_format;
+            entry["dxgi_format"] = info.dxgi_format;
+        }
+        entry["bytes_per_texel"] = bytes_per_texel(info);
+        out.push_back(std::move(entry));
+    }
+    return out;
+}
+
+Json places_json(const std::vector<TexturePages::Place>& places) {
+    Json out = Json::array();
+    for (const TexturePages::Place& place : places)
+        out.push_back({{"file", place.file}, {"layer", place.layer}, {"scale", json_number(place.scale)}});
+    return out;
+}
+
 }  // namespace
 
-Result<EncodedOutput> EncodedOutput::create(const fs::path& folder, const Encoding& encoding,
-                                            const LightRecord& record) {
+EncodedOutput::EncodedOutput(FileSet files, const Encoding& encoding, LightRecord record, const EncodedTarget& target)
+    : files_(std::move(files)), encoding_(&encoding), record_(std::move(record)), target_(target) {
+    if (target.storage) textures_.emplace(files_.partial(), encoding, target);
+}
+
+Result<EncodedOutput> EncodedOutput::create(const fs::path& folder, const Encoding& encoding, const LightRecord& record,
+                                            const EncodedTarget& target) {
     LUMEL_TRY(FileSet files, FileSet::create(folder, encoded_stem(encoding.name)));
-    return EncodedOutput(std::move(files), encoding, record);
+    return EncodedOutput(std::move(files), encoding, record, target);
+}
+
+Status EncodedOutput::write_exr_page(const EncodedPage& page, Context& context) {
+    const std::string name = encoded_page_file(encoding_->name, static_cast<std::uint32_t>(pages_.size()));
+    LUMEL_TRY(std::string type, write_encoded_page(partial() / name, *encoding_, page, context));
+    pages_.push_back({page.width, page.height, std::move(type)});
+    return success();
 }
 
 Status EncodedOutput::page(const EncodedPage& page, Context& context) {
-    const std::string name = encoded_page_file(encoding_->name, static_cast<std::uint32_t>(pages_.size()));
-    const Result<std::string> type = write_encoded_page(partial() / name, *encoding_, page, context);
-    if (!type.ok()) return files_.in_place(type.error());
-    pages_.push_back({name, *type, page.width, page.height});
+    const Status status = textures_ ? textures_->add(page, context) : write_exr_page(page, context);
+    if (!status.ok()) return files_.in_place(status.error());
+    if (textures_) pages_.push_back({page.width, page.height, {}});
     return success();
 }
 
@@ -48,24 +85,42 @@ std::string EncodedOutput::json() const {
              {"frame", encoding_->rotate ? "world" : "tangent"},
              {"input_hash", record_.input_hash},
              {"layers", layer_names(record_.include)},
+             {"format", target_.format->name},
              {"channels", Json::array()},
              {"pages", Json::array()}};
     for (const Field& field : encoding_->fields)
         out["channels"].push_back({{"name", field.name}, {"kind", kind_name(field.kind)}});
-    for (const Page& page : pages_)
-        out["pages"].push_back(
-            {{"file", page.file}, {"width", page.width}, {"height", page.height}, {"type", page.type}});
+    if (textures_) {
+        out["storage"] = target_.storage->name;
+        out["textures"] = textures_json(*encoding_, textures_->layout());
+    }
+    for (std::size_t p = 0; p < pages_.size(); ++p) {
+        Json page = Json::object();
+        if (!textures_) page["file"] = encoded_page_file(encoding_->name, static_cast<std::uint32_t>(p));
+        page["width"] = pages_[p].width;
+        page["height"] = pages_[p].height;
+        if (textures_)
+            page["textures"] = places_json(textures_->places(p));
+        else
+            page["type"] = pages_[p].type;
+        out["pages"].push_back(std::move(page));
+    }
     return out.dump(2) + "\n";
+}
+
+std::vector<std::string> EncodedOutput::files() const {
+    if (textures_) return textures_->files();
+    std::vector<std::string> out;
+    for (std::uint32_t p = 0; p < pages_.size(); ++p) out.push_back(encoded_page_file(encoding_->name, p));
+    return out;
 }
 
 Status EncodedOutput::commit(const MasterList& source) {
     const std::string name = encoded_stem(encoding_->name) + ".json", text = json();
     const Status written = write_file(partial() / name, std::as_bytes(std::span(text)));
     if (!written.ok()) return files_.in_place(written.error());
-    std::vector<std::string> pages;
-    for (const Page& page : pages_) pages.push_back(page.file);
-    const auto is_page = [&](const std::string& file) { return is_encoded_page_file(encoding_->name, file); };
-    return files_.commit(name, pages, is_page, [&] { return check_unchanged(source); });
+    const auto is_page = [&](const std::string& file) { return is_encoded_page_file(*encoding_, file); };
+    return files_.commit(name, files(), is_page, [&] { return check_unchanged(source); });
 }
 
 }  // namespace lumel

@@ -4,20 +4,23 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "io/encoded_page.h"
 #include "io/file_set.h"
 #include "io/light_record.h"
+#include "io/texture_pages.h"
 
 namespace lumel {
 
 class EncodedOutput {
 public:
     // Makes the folder as needed, and in it one for what is not finished, which goes with this.
+    // Precondition: the storage of the target, if any, holds the encoding.
     static Result<EncodedOutput> create(const std::filesystem::path& folder, const Encoding& encoding,
-                                        const LightRecord& record);
+                                        const LightRecord& record, const EncodedTarget& target = {});
 
     // Where unfinished files are.
     [[nodiscard]] const std::filesystem::path& partial() const { return files_.partial(); }
@@ -25,22 +28,26 @@ public:
     // Writes the next page.
     Status page(const EncodedPage& page, Context& context);
 
-    // Moves all into place, the JSON last: a reader who finds it finds the pages that it names. Pages of an older run
-    // that are more than these go. An error where the bake was replaced since its masters were listed.
+    // Moves all into place, the JSON last: a reader who finds it finds the pages that it names. Files of an older run,
+    // in this format or another, go where these do not replace them. An error where the bake was replaced since its
+    // masters were listed. Precondition: all layers of the target are there.
     Status commit(const MasterList& source);
 
 private:
     struct Page {
-        std::string file, type;
         std::uint32_t width, height;
+        std::string type;  // of EXR
     };
-    EncodedOutput(FileSet files, const Encoding& encoding, LightRecord record)
-        : files_(std::move(files)), encoding_(&encoding), record_(std::move(record)) {}
+    EncodedOutput(FileSet files, const Encoding& encoding, LightRecord record, const EncodedTarget& target);
+    Status write_exr_page(const EncodedPage& page, Context& context);
     [[nodiscard]] std::string json() const;
+    [[nodiscard]] std::vector<std::string> files() const;
 
     FileSet files_;
     const Encoding* encoding_;
     LightRecord record_;
+    EncodedTarget target_;
+    std::optional<TexturePages> textures_;  // none for EXR
     std::vector<Page> pages_;
 };
 

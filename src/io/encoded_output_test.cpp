@@ -39,8 +39,8 @@ protected:
         record_.include = {true, false, true};
     }
 
-    Result<EncodedOutput> with_pages(std::size_t count) {
-        Result<EncodedOutput> out = EncodedOutput::create(bake_, kIrradZHhd, record_);
+    Result<EncodedOutput> with_pages(std::size_t count, const EncodedTarget& target = {}) {
+        Result<EncodedOutput> out = EncodedOutput::create(bake_, kIrradZHhd, record_, target);
         for (std::size_t p = 0; p < count && out.ok(); ++p) {
             const EncodedPage page{3, 2, {0, kNone, kNone, kNone, kNone, kNone}, {Numbers{1, 2, 3, 0.5f, 0, 0}}};
             EXPECT_TRUE(out->page(page, context_).ok());
@@ -70,6 +70,56 @@ TEST_F(EncodedFiles, AreDescribedAsTheSchemaSays) {
     Json broken = json;
     broken["pages"][0]["type"] = "double";
     EXPECT_FALSE(schema.errors(broken).empty());
+}
+
+TEST_F(EncodedFiles, OfTexturesAreDescribedAsTheSchemaSays) {
+    const test::JsonSchema schema(json_file(std::string(LUMEL_SOURCE_DIR) + "/docs/schema/encoded.schema.json"));
+    for (const EncodedFormat& format : encoded_formats()) {
+        if (format.file == EncodedFile::exr) continue;
+        SCOPED_TRACE(format.name);
+        const TextureStorage* storage = find_texture_storage(format.storage ? format.storage : "bc45");
+        const bool layered = format.file == EncodedFile::ktx2 || format.file == EncodedFile::dds;
+        {
+            auto output = with_pages(2, {&format, storage, BcQuality::fast, layered ? 2u : 0u});
+            ASSERT_TRUE(output.ok()) << output.error().text();
+            ASSERT_TRUE(output->commit(masters()).ok());
+        }
+        const Json json = json_file(bake_ / "encoded_irradz-hhd.json");
+        for (const std::string& line : schema.errors(json)) ADD_FAILURE() << line;
+        EXPECT_EQ(json["format"], format.name);
+        ASSERT_EQ(json["pages"].size(), 2u);
+        Names files{"manifest.json", "encoded_irradz-hhd.json"};
+        for (const Json& texture : json["pages"][1]["textures"]) {
+            files.insert(texture["file"]);
+            EXPECT_EQ(texture["layer"], layered ? 1 : 0);
+        }
+        if (!layered)
+            for (const Json& texture : json["pages"][0]["textures"]) files.insert(texture["file"]);
+        // Nothing of the format before is left.
+        EXPECT_EQ(names_in(bake_), files);
+    }
+}
+
+TEST_F(EncodedFiles, OfPagesOfOneSizeAreLayers) {
+    const EncodedFormat* ktx2 = find_encoded_format("ktx2");
+    const TextureStorage* bc7 = find_texture_storage("bc7");
+    auto output = with_pages(3, {ktx2, bc7, BcQuality::fast, 3});
+    ASSERT_TRUE(output.ok() && output->commit(masters()).ok());
+    const auto word = [&](const char* file, std::streamoff at) {
+        std::ifstream stream(bake_ / file, std::ios::binary);
+        std::uint32_t out = 0;
+        stream.seekg(at);
+        stream.read(reinterpret_cast<char*>(&out), sizeof out);
+        EXPECT_TRUE(stream.good()) << file;
+        return out;
+    };
+    EXPECT_EQ(word("encoded_irradz-hhd_I.ktx2", 12), 143u);
+    EXPECT_EQ(word("encoded_irradz-hhd_I.ktx2", 32), 3u) << "layers";
+    EXPECT_EQ(word("encoded_irradz-hhd_w-d.ktx2", 12), 145u);
+    auto apart = with_pages(2, {ktx2, bc7, BcQuality::fast, 0});
+    ASSERT_TRUE(apart.ok() && apart->commit(masters()).ok());
+    EXPECT_EQ(word("encoded_irradz-hhd_w-d_1.ktx2", 32), 0u) << "no array";
+    EXPECT_FALSE(fs::exists(bake_ / "encoded_irradz-hhd_I.ktx2"));
 }
 
 TEST_F(EncodedFiles, AppearTogetherAndReplaceAllOlderOnes) {

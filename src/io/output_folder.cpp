@@ -18,8 +18,8 @@
 #include <vector>
 
 #include "base/try.h"
-#include "encode/encoding.h"
 #include "io/atomic_file.h"
+#include "io/encoded_target.h"
 #include "io/page_files.h"
 
 namespace lumel {
@@ -31,17 +31,6 @@ namespace fs = std::filesystem;
 // kLeaving, which becomes kReplaced once it holds them all; then the new ones move in. So what a killed process leaves
 // says how far it got: kLeaving is to be put back, kReplaced only where the newer bake has no manifest yet.
 constexpr std::string_view kPartial = ".partial-", kLeaving = ".leaving-", kReplaced = ".replaced-";
-
-bool all_digits(std::string_view text) {
-    return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
-}
-
-// stem, digits, extension?
-bool is_numbered(std::string_view name, std::string_view stem, std::string_view extension) {
-    return name.size() > stem.size() + extension.size() && name.substr(0, stem.size()) == stem &&
-           name.substr(name.size() - extension.size()) == extension &&
-           all_digits(name.substr(stem.size(), name.size() - stem.size() - extension.size()));
-}
 
 Error folder_error(const char* doing, const fs::path& path, const std::error_code& error) {
     return system_error(doing, path, error.value());
@@ -194,7 +183,7 @@ std::string free_number(const fs::path& target) {
 
 bool is_encoded_file(const std::string& name) {
     return std::ranges::any_of(list_encodings(), [&](const Encoding* encoding) {
-        return name == encoded_stem(encoding->name) + ".json" || is_encoded_page_file(encoding->name, name);
+        return name == encoded_stem(encoding->name) + ".json" || is_encoded_page_file(*encoding, name);
     });
 }
 
@@ -210,8 +199,8 @@ Result<FolderLock> lock_folder(const fs::path& folder) {
                  "wait for the one that moves its files there, or choose another folder with -o"};
 }
 
-bool is_encoded_page_file(const std::string& encoding, const std::string& name) {
-    return is_numbered(name, encoded_stem(encoding) + "_", ".exr");
+bool is_encoded_page_file(const Encoding& encoding, const std::string& name) {
+    return is_numbered(name, encoded_stem(encoding.name) + "_", ".exr") || is_encoded_texture_file(encoding, name);
 }
 
 bool is_output_file(const std::string& name) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 
+#include "encode/encoding.h"
 #include "lumel/result.h"
 
 namespace lumel {
@@ -69,6 +70,6 @@ Result<FolderLock> lock_folder(const std::filesystem::path& folder);
 // Is this the name of a file that a bake writes, or of one that is made of its files (encode)? Those of an older bake
 // go when a new one moves in.
 bool is_output_file(const std::string& name);
-bool is_encoded_page_file(const std::string& encoding, const std::string& name);
+bool is_encoded_page_file(const Encoding& encoding, const std::string& name);
 
 }  // namespace lumel

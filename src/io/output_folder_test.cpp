@@ -114,16 +114,19 @@ TEST(OutputFolder, ReplacesOurFilesAndKeepsForeignOnes) {
 TEST(OutputFolder, EncodedFilesGoWithTheirBake) {
     const TemporaryFolder folder;
     fs::create_directory(folder / "out");
-    for (const char* name : {"manifest.json", "encoded_l2.json", "encoded_l2_0.exr", "encoded_irradz-hhd_12.exr"})
+    for (const char* name : {"manifest.json", "encoded_l2.json", "encoded_l2_0.exr", "encoded_irradz-hhd_12.exr",
+                             "encoded_l2_L0.ktx2", "encoded_l1-hhd_L1n-R_3.dds", "encoded_irradz-hhd_w-d_0.png",
+                             "encoded_irradz-hhd_d.ktx2", "encoded_irradiance_I_0.hdr"})
         put(folder / "out" / name, kOldManifest);
-    for (const char* name : {"encoded_l2_x.exr", "encoded_mine_0.exr", "encoded_l2_0.png", "encoded_l2_.exr"})
+    for (const char* name :
+         {"encoded_l2_x.exr", "encoded_mine_0.exr", "encoded_l2_0.png", "encoded_l2_.exr", "encoded_l2_I.ktx2"})
         put(folder / "out" / name, "foreign");
     auto output = OutputFolder::create(folder / "out");
     ASSERT_TRUE(output.ok());
     put(output->path() / "manifest.json", "new");
     ASSERT_TRUE(output->commit().ok());
     EXPECT_EQ(names_in(folder / "out"), (Names{"manifest.json", "encoded_l2_x.exr", "encoded_mine_0.exr",
-                                               "encoded_l2_0.png", "encoded_l2_.exr"}));
+                                               "encoded_l2_0.png", "encoded_l2_.exr", "encoded_l2_I.ktx2"}));
 }
 
 // A folder of the name of one of our files cannot be replaced: everything must be as before.

@@ -1,8 +1,10 @@
 // The names of the files in the output folder, in one place.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "encode/units.h"
 
@@ -72,7 +74,16 @@ inline std::string page_file(PageFile kind, std::uint32_t page) {
     return name.stem + std::to_string(page) + name.extension;
 }
 
-// "encoded_l2": of what `lumel encode` writes, as .json and, for each page, _<page>.exr.
+// Is a name this stem, digits, this extension?
+inline bool is_numbered(std::string_view name, std::string_view stem, std::string_view extension) {
+    if (name.size() <= stem.size() + extension.size() || !name.starts_with(stem) || !name.ends_with(extension))
+        return false;
+    const std::string_view number = name.substr(stem.size(), name.size() - stem.size() - extension.size());
+    return std::ranges::all_of(number, [](char c) { return c >= '0' && c <= '9'; });
+}
+
+// "encoded_l2": of what `lumel encode` writes, as .json and, for each page, _<page>.exr;
+// textures are in encoded_target.h.
 inline std::string encoded_stem(const std::string& encoding) { return "encoded_" + encoding; }
 inline std::string encoded_page_file(const std::string& encoding, std::uint32_t page) {
     return encoded_stem(encoding) + "_" + std::to_string(page) + ".exr";
