@@ -1,5 +1,6 @@
 # Precompiled headers of libraries that are not ours: LUMEL_PRECOMPILE=ON, else these do nothing. Never our own headers,
-# and never in the build that users make, which must see every include that a file lacks.
+# and never in the build that users make, which must see every include that a file lacks (and g++ 14 at -O3 warns of what
+# it inlines from them). For the sanitizers' builds.
 #   lumel_precompiled(name [LIBS ...] [HEADERS ...])   a set of headers, the standard library's always among them
 #   lumel_use_precompiled(target name)                 the target is compiled with that set
 function(lumel_precompiled name)
