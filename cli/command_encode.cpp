@@ -196,6 +196,7 @@ Status run(const Options& options) {
 template <class Rows>
 std::vector<std::string> names_of(const Rows& rows) {
     std::vector<std::string> out;
+    out.reserve(std::size(rows));
     for (const auto& row : rows) out.emplace_back(row.name);
     return out;
 }

@@ -244,6 +244,7 @@ private:
 
     bool unwrap(const std::vector<std::uint32_t>& own) {
         std::vector<UnwrapMesh> meshes;
+        meshes.reserve(own.size());
         for (const std::uint32_t m : own) meshes.push_back({&mesh(m), &topology_[m], {}, 0});
         if (!unwrap_meshes(meshes, context_)) return false;
         for (std::size_t k = 0; k < own.size(); ++k) {

@@ -63,6 +63,7 @@ double layout_stretch(const Scene& scene, const WorldGeometry& geometry, const C
         const std::vector<std::uint32_t> triangles = charted_triangles(mesh);
         if (of_mesh[m] == 0.0) {
             std::vector<UvTriangle> uv;
+            uv.reserve(triangles.size());
             for (const std::uint32_t t : triangles) uv.push_back(mesh.uv[t]);
             of_mesh[m] = l2_stretch(*scene.meshes[m], triangles, uv);
         }
