@@ -217,8 +217,8 @@ Image draw_plot(const std::vector<PlotPanel>& panels, std::size_t columns) {
     std::vector<std::string> names;
     for (std::size_t i = 0; i < panels.size(); ++i) {
         const PlotPanel& panel = panels[i];
-        const Frame frame(
-            panel, {static_cast<float>((i % columns) * kPanelWidth), static_cast<float>((i / columns) * kPanelHeight)});
+        const std::size_t left = i % columns * kPanelWidth, top = i / columns * kPanelHeight;
+        const Frame frame(panel, {static_cast<float>(left), static_cast<float>(top)});
         draw_axes(canvas, panel, frame);
         std::vector<Vec3> colors;
         for (const PlotLine& line : panel.lines) {

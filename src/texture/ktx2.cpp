@@ -86,9 +86,9 @@ std::vector<std::byte> format_descriptor(const TexelFormatInfo& format, const De
 
 // Keys in the order of their bytes.
 std::vector<std::byte> key_values() {
+    using namespace std::string_view_literals;
     detail::FileBytes out;
-    for (const std::string_view pair :
-         {std::string_view("KTXorientation\0rd", 18), std::string_view("KTXwriter\0lumel", 16)}) {
+    for (const std::string_view pair : {"KTXorientation\0rd\0"sv, "KTXwriter\0lumel\0"sv}) {
         out.u32(pair.size());
         out.bytes(pair.data(), pair.size());
         out.pad_to(4);
