@@ -1,7 +1,6 @@
 #include "path/light_statistics.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "math/discrete.h"
