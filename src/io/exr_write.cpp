@@ -186,8 +186,12 @@ private:
         }
     }
 
+    // A chunk of the size it had is read as not compressed, but OpenEXR before 3.4.8 leaves one that happens to come
+    // out at that size compressed: its rows would be read as noise (its issue 2306).
     static exr_result_t keep(exr_encode_pipeline_t* pipeline) {
-        const auto* const bytes = static_cast<const std::byte*>(pipeline->compressed_buffer);
+        const bool raw = pipeline->compressed_bytes == pipeline->packed_bytes;
+        const auto* const bytes =
+            static_cast<const std::byte*>(raw ? pipeline->packed_buffer : pipeline->compressed_buffer);
         static_cast<std::vector<std::byte>*>(pipeline->encoding_user_data)
             ->assign(bytes, bytes + pipeline->compressed_bytes);
         return EXR_ERR_SUCCESS;

@@ -6,9 +6,11 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <random>
 #include <set>
 
 #include "io/atomic_file.h"
@@ -142,6 +144,27 @@ TEST(WriteExr, EmptyChunksAreZeroInTheirPlaces) {
         for (std::uint32_t x = 0; x < 6; ++x)
             for (std::uint32_t c = 0; c < 2; ++c)
                 ASSERT_EQ(read->planes[c][6 * y + x], has_light(y) ? float(y + 6 * c + x) : 0.0f) << x << " " << y;
+}
+
+// A chunk that compresses to exactly its own size must not be stored compressed, for readers take it as it is. Each
+// chunk of 16 rows has a few more random bytes in it than the one before: from well compressed to not at all, so that
+// some of the 8,000 come out at that size.
+TEST(WriteExr, ChunksThatCompressToTheirOwnSizeAreLossless) {
+    const TemporaryFolder folder;
+    constexpr std::uint32_t kWidth = 8, kChunks = 1000, kFloats = 16 * kWidth;
+    std::mt19937 random(1);
+    for (int file = 0; file < 8; ++file) {
+        Image image(kWidth, 16 * kChunks, 1);
+        for (std::uint32_t chunk = 0; chunk < kChunks; ++chunk)
+            for (std::uint32_t i = 0; i < kFloats; ++i) {
+                const std::uint32_t noise = i < chunk % kFloats ? random() & 0x007fffffu : 0u;
+                image.data[chunk * kFloats + i] = std::bit_cast<float>(0x3f800000u | noise);
+            }
+        ASSERT_TRUE(write_exr(folder / "a.exr", image, ExrType::full).ok());
+        const auto read = read_image(folder / "a.exr");
+        ASSERT_TRUE(read.ok()) << read.error().text();
+        expect_equal(*read, image);
+    }
 }
 
 TEST(WriteExr, StopsBetweenRowsWhereCancelled) {
