@@ -18,6 +18,14 @@ struct Receiver {
     const LightTable* table = nullptr;
 };
 
+// Where receivers are that share a choice of lights: all within a sphere, their normals within a cone.
+struct ReceiverRegion {
+    Vec3 centre;
+    Vec3 axis;                 // of the normals
+    float radius = 0.0f;       // metres
+    float cos_normals = 1.0f;  // cosine of the half angle of their cone
+};
+
 // Where a light is and where it shines; of a group of lights, a bound.
 struct LightBounds {
     Vec3 low, high;             // box

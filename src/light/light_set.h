@@ -56,8 +56,8 @@ public:
     // Parts of the local lights that a LightTable says how often to choose, of light that has not bounced; none where
     // there is nothing to choose, or no tree.
     [[nodiscard]] std::span<const LightTree::Subtree> groups() const { return groups_; }
-    [[nodiscard]] double importance_of(std::size_t group, const Receiver& receiver) const {
-        return trees_[0].importance_of(groups_[group], receiver);
+    [[nodiscard]] double importance_of(std::size_t group, const ReceiverRegion& region) const {
+        return trees_[0].importance_of(groups_[group], region);
     }
     // u_select picks the light, u the point on it.
     [[nodiscard]] LightSample sample_local(const Receiver& receiver, float u_select, Vec2 u, bool bounced) const;

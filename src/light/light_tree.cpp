@@ -51,20 +51,36 @@ PreparedBounds::PreparedBounds(const LightBounds& b)
 }
 
 double PreparedBounds::importance(const Receiver& receiver) const {
+    return importance_in<false>({receiver.position, receiver.normal});
+}
+
+double PreparedBounds::importance(const ReceiverRegion& region) const { return importance_in<true>(region); }
+
+// From anywhere in a region the directions to a box are those from its centre to a box that is larger by its radius.
+template <bool is_region>
+double PreparedBounds::importance_in(const ReceiverRegion& region) const {
     if (!(intensity_ > 0.0)) return 0.0;
-    if (reach_ < std::numeric_limits<float>::infinity() && distance_to_box(low_, high_, receiver.position) > reach_)
+    if (reach_ < std::numeric_limits<float>::infinity() &&
+        distance_to_box(low_, high_, region.centre) > reach_ + region.radius)
         return 0.0;
-    const Vec3 to_light = centre_ - receiver.position;
+    const Vec3 to_light = centre_ - region.centre;
     const float distance_squared = std::clamp(dot(to_light, to_light), std::numeric_limits<float>::min(), kHuge);
+    float radius_squared = radius_squared_;
+    if constexpr (is_region) {
+        const float radius = std::sqrt(radius_squared_) + region.radius;
+        radius_squared = std::min(radius * radius, kHuge);
+    }
     float share = 1.0f;
-    if (distance_squared > radius_squared_) {  // else the receiver is within the box, or nearly
+    if (distance_squared > radius_squared) {  // else the receiver is within the box, or nearly
         const float inverse_square = 1.0f / distance_squared;
         const Vec3 direction = to_light * std::sqrt(inverse_square);
         // What the box hides of the sky, at most: half angle of its bounding sphere.
-        const float sine_squared = radius_squared_ * inverse_square;
+        const float sine_squared = radius_squared * inverse_square;
         const Angle box{safe_sqrt(1.0f - sine_squared), std::sqrt(sine_squared)};
-        const float arriving = dot(direction, receiver.normal);
-        const float cosine = minus({arriving, sine_of(arriving)}, box).cosine;
+        const float arriving = dot(direction, region.axis);
+        Angle from_normal = minus({arriving, sine_of(arriving)}, box);
+        if constexpr (is_region) from_normal = minus(from_normal, {region.cos_normals, sine_of(region.cos_normals)});
+        const float cosine = from_normal.cosine;
         if (cosine <= 0.0f) return 0.0;
         share = kGrazing + (1.0f - kGrazing) * cosine;
         if (cos_facing_ > -1.0f) {
@@ -77,7 +93,7 @@ double PreparedBounds::importance(const Receiver& receiver) const {
         }
     }
     // Within its own size a light is not nearer than that.
-    return intensity_ * double{share} / double{std::max(distance_squared, radius_squared_)};
+    return intensity_ * double{share} / double{std::max(distance_squared, radius_squared)};
 }
 
 namespace {
@@ -371,8 +387,8 @@ std::uint32_t LightTree::units_in(const Subtree& group, std::uint32_t units, con
     return nodes_[index].light == light ? units : 0;
 }
 
-double LightTree::importance_of(const Subtree& group, const Receiver& receiver) const {
-    return nodes_[group.node].bounds.importance(receiver);
+double LightTree::importance_of(const Subtree& group, const ReceiverRegion& region) const {
+    return nodes_[group.node].bounds.importance(region);
 }
 
 std::vector<LightTree::Subtree> LightTree::groups(std::size_t most) const {

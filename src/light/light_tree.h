@@ -25,9 +25,14 @@ public:
     explicit PreparedBounds(const LightBounds& bounds);
     // Of the light at a receiver, up to a factor that all bounds share; zero only if nothing can come from there.
     [[nodiscard]] double importance(const Receiver& receiver) const;
+    // The same of a region: zero only if nothing can come to any receiver in it.
+    [[nodiscard]] double importance(const ReceiverRegion& region) const;
     [[nodiscard]] double intensity() const { return intensity_; }
 
 private:
+    template <bool is_region>
+    [[nodiscard]] double importance_in(const ReceiverRegion& region) const;
+
     Vec3 low_{}, high_{}, centre_{}, axis_{};
     float radius_squared_ = 0.0f;
     float cos_facing_ = -1.0f, sin_facing_ = 0.0f, cos_emission_ = 0.0f, reach_ = 0.0f;
@@ -65,7 +70,7 @@ public:
     // For each light the group that has it, or kNoLight where none does.
     [[nodiscard]] std::vector<std::uint32_t> group_of_lights(std::span<const Subtree> groups) const;
     // Importance of the lights of a group.
-    [[nodiscard]] double importance_of(const Subtree& group, const Receiver& receiver) const;
+    [[nodiscard]] double importance_of(const Subtree& group, const ReceiverRegion& region) const;
     // As above, below a group's root: `unit` of the `units` that the group has been given.
     [[nodiscard]] Chosen choose_in(const Subtree& group, std::uint32_t unit, std::uint32_t units,
                                    const Receiver& receiver) const;

@@ -202,6 +202,36 @@ TEST(Importance, OfZeroIsDarkness) {
     EXPECT_GT(zeros, 2000);
 }
 
+// What lights any receiver of a region has a chance in it.
+TEST(Importance, OfARegionIsZeroOnlyIfThatOfAllItsReceiversIs) {
+    test::Random random(8);
+    const auto direction = [&] {
+        const Vec2 u = random.pair();
+        return direction_from_z(1.0f - 2.0f * u.x, u.y);
+    };
+    int zeros = 0, rims = 0;
+    for (const LightBounds& light : crowd(3000, 4)) {
+        const Vec2 a = random.pair();
+        ReceiverRegion region{Vec3{a.x, a.y, random.unit()} * 10.0f, direction(), 0.5f * random.unit()};
+        region.cos_normals = 1.0f - 0.5f * random.unit();
+        const PreparedBounds bounds(light);
+        const bool lit = bounds.importance(region) > 0.0;
+        const double centre = bounds.importance(Receiver{region.centre, region.axis});
+        // A region of one receiver: the same but for the root of a square.
+        EXPECT_NEAR(bounds.importance(ReceiverRegion{region.centre, region.axis}), centre, 1e-5 * centre);
+        rims += lit && !(centre > 0.0);
+        zeros += !lit;
+        for (int k = 0; k < 64 && !lit; ++k) {
+            const Vec3 position = region.centre + direction() * (region.radius * random.unit());
+            const float cosine = region.cos_normals + (1.0f - region.cos_normals) * random.unit();
+            const Vec3 normal = Frame(region.axis).to_world(direction_from_z(cosine, random.unit()));
+            EXPECT_EQ(bounds.importance(Receiver{position, normal}), 0.0);
+        }
+    }
+    EXPECT_GT(zeros, 500);
+    EXPECT_GT(rims, 100);
+}
+
 TEST(LightTree, PrefersWhatIsNearAndFacesTheReceiver) {
     const std::vector<LightBounds> lights{
         patch_bounds({0, 1, 0}, 0.1f, {0, -1, 0}, 1.0), patch_bounds({0, 3, 0}, 0.1f, {0, -1, 0}, 1.0),

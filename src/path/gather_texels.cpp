@@ -22,6 +22,27 @@ constexpr std::uint32_t kFewestSamplesForGuide = 64;
 // choice is the more even the longer its sequence.
 constexpr std::uint32_t kLightsKnownFrom = 4 * kFirstRound;
 
+// Around where all paths of a texel start.
+ReceiverRegion region_of(std::span<const SurfaceStart> starts) {
+    constexpr float kRounding = 1e-5f;  // of what is compared with it
+    Vec3 low = starts[0].origin, high = low, normals{};
+    for (const SurfaceStart& start : starts) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            low[c] = std::min(low[c], start.origin[c]);
+            high[c] = std::max(high[c], start.origin[c]);
+        }
+        normals += start.normal;
+    }
+    ReceiverRegion region{low + (high - low) * 0.5f, normalize_or(normals, starts[0].normal)};
+    for (const SurfaceStart& start : starts) {
+        region.radius = std::max(region.radius, length(start.origin - region.centre));
+        region.cos_normals = std::min(region.cos_normals, dot(start.normal, region.axis));
+    }
+    region.radius *= 1.0f + kRounding;
+    region.cos_normals = std::max(-1.0f, region.cos_normals - kRounding);
+    return region;
+}
+
 }  // namespace
 
 void PathIntegrator::begin_texel(const GatherSite& site, Workspace& w, TexelState& texel) const {
@@ -111,12 +132,10 @@ bool PathIntegrator::gather_rounds(Workspace& w, const Context& context) const {
     const bool guided = may_learn && options_.guided;
     w.learns_lights = may_learn && options_.lights_learned;
     if (w.learns_lights) {
-        std::array<Receiver, kMostTexelsTogether> receivers;
-        for (std::size_t k = 0; k < w.texels.size(); ++k) {
-            const SurfaceStart& start = w.texels[k].surfaces[0];
-            receivers[k] = {start.origin, start.normal, nullptr};
-        }
-        w.light_statistics.begin(transport_.lights, std::span(receivers).first(w.texels.size()));
+        std::array<ReceiverRegion, kMostTexelsTogether> regions;
+        for (std::size_t k = 0; k < w.texels.size(); ++k)
+            regions[k] = region_of(std::span(w.texels[k].surfaces).first(w.texels[k].points));
+        w.light_statistics.begin(transport_.lights, std::span(regions).first(w.texels.size()));
     }
     std::array<std::uint32_t, kMostTexelsTogether> wanted;
     std::array<TexelProgress, kMostTexelsTogether> progress;

@@ -8,16 +8,19 @@
 namespace lumel {
 namespace {
 
-constexpr double kPriorShare = 0.1;    // of the samples, whatever was learned
+constexpr double kPriorShare = 0.1;  // of the samples, whatever was learned
+// Of the tree's bound for the whole texel, which is less sharp than what it says of the texel's middle, but zero only
+// where a light reaches no point of it.
+constexpr double kRimShare = 0.2;
 constexpr double kPriorSamples = 4.0;  // that the tree's word counts for, of each group
 
 }  // namespace
 
-void LightStatistics::begin(const LightSet& lights, std::span<const Receiver> receivers) {
+void LightStatistics::begin(const LightSet& lights, std::span<const ReceiverRegion> texels) {
     const auto groups = lights.groups();
     groups_.assign(groups.size(), {});
-    expected_.assign(groups.size() * receivers.size(), 0.0f);
-    tables_.resize(groups.empty() ? 0 : receivers.size());
+    expected_.assign(groups.size() * texels.size(), 0.0f);
+    tables_.resize(groups.empty() ? 0 : texels.size());
     sum_ = 0.0;
     samples_ = 0;
     for (std::size_t g = 0; g < groups.size(); ++g) groups_[g].guaranteed = groups[g].guaranteed;
@@ -25,23 +28,24 @@ void LightStatistics::begin(const LightSet& lights, std::span<const Receiver> re
     for (std::size_t r = 0; r < tables_.size(); ++r) {
         double total = 0.0;
         for (std::size_t g = 0; g < groups.size(); ++g) {
-            importance[g] = lights.importance_of(g, receivers[r]);
+            importance[g] = lights.importance_of(g, {texels[r].centre, texels[r].axis}) +
+                            kRimShare * lights.importance_of(g, texels[r]);
             total += importance[g];
         }
         if (!(total > 0.0) || !std::isfinite(total)) continue;
         for (std::size_t g = 0; g < groups.size(); ++g) {
             const double share = importance[g] / total;
             expected_[r * groups.size() + g] = static_cast<float>(share);
-            groups_[g].mean_square += share * share / static_cast<double>(receivers.size());
+            groups_[g].mean_square += share * share / static_cast<double>(texels.size());
         }
     }
     learn();
 }
 
-void LightStatistics::add(std::size_t receiver, std::uint32_t group, float value) {
+void LightStatistics::add(std::size_t texel, std::uint32_t group, float value) {
     Group& g = groups_[group];
-    const double brought = static_cast<double>(value) * probability(tables_[receiver].units(group));
-    const double by_tree = expected(receiver)[group];
+    const double brought = static_cast<double>(value) * probability(tables_[texel].units(group));
+    const double by_tree = expected(texel)[group];
     g.squares += brought * brought;
     g.expected += by_tree * by_tree;
     sum_ += static_cast<double>(value);
@@ -61,9 +65,9 @@ void LightStatistics::learn() {
     for (std::size_t r = 0; r < tables_.size(); ++r) make_table(r, factors);
 }
 
-void LightStatistics::make_table(std::size_t receiver, std::span<const double> factors) {
-    const float* const by_tree = expected(receiver);
-    std::vector<std::uint32_t>& ends = tables_[receiver].ends;
+void LightStatistics::make_table(std::size_t texel, std::span<const double> factors) {
+    const float* const by_tree = expected(texel);
+    std::vector<std::uint32_t>& ends = tables_[texel].ends;
     ends.clear();
     double all = 0.0, total = 0.0;
     std::uint32_t guaranteed = 0;
