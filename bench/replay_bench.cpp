@@ -1,7 +1,6 @@
 // How near the bake comes to the speed of its ray tracer: some texels of a scene are gathered with a tracer that keeps
 // every batch; then the batches are traced again, alone. One thread, CPU time.
 #include <algorithm>
-#include <array>
 #include <cstdio>
 #include <memory>
 #include <vector>
@@ -9,7 +8,9 @@
 #include "bench.h"
 #include "bench_scene.h"
 #include "light/light_set.h"
-#include "path/path_integrator.h"
+#include "load.h"
+#include "path/gather_page.h"
+#include "path/light_cells.h"
 
 namespace lumel::bench {
 namespace {
@@ -73,55 +74,60 @@ double median(std::vector<double> values) {
 
 struct Options {
     std::string scene;
-    std::uint32_t texels = 2000, samples = 64;
-    int repeats = 15;
+    std::uint32_t texels = 2000, samples = 256;
+    int repeats = 7;
 };
 
-void run_replay(const Options& options) {
-    Context context(1);
-    const BenchScene bench(options.scene, {}, context);
-    const LightSet lights(bench.scene, bench.geometry, bench.surfaces);
-    const TexelBuffer& texels = bench.texels;
-    const TexelRange range = bench.middle_texels(options.texels);
-    PathOptions path;
-    path.samples = options.samples;
-    path.ao_distance = bench.ao_distance();
+struct Shares {
+    double rays, batches, bake_seconds, replay_seconds, share;
+};
 
-    const auto gather = [&](const Tracer& with) {
-        const PathIntegrator integrator({bench.scene, bench.geometry, bench.surfaces, lights, with}, path);
-        const auto workspace = integrator.make_workspace();
-        RadianceSums sums;
-        sums.resize(range.count);
-        std::array<SamplePoint, kSamplesPerTexel> points;
-        for (std::size_t i = 0; i < range.count; ++i) {
-            const std::size_t texel = range.first + i;
-            const std::uint32_t n =
-                sample_points(texels, texel, bench.scene, bench.geometry, bench.charts, bench.atlas, points);
-            const std::uint64_t id = std::uint64_t{texels.y[texel]} << 16 | texels.x[texel];
-            const GatherSite site{std::span(points).first(n), id, texels.world_size[texel]};
-            const auto index = static_cast<std::uint32_t>(i);
-            integrator.gather_texels({&site, 1}, {&index, 1}, *workspace, sums, context);
-        }
-    };
-    const RecordingTracer recorder(*bench.tracer);
+// `gather(tracer)` is the bake. By turns, and the median of the pairs' shares: the machine's other work hits both of a
+// pair alike.
+template <class Gather>
+Shares measure(const Tracer& tracer, int repeats, Gather&& gather) {
+    const RecordingTracer recorder(tracer);
     gather(recorder);
-    // By turns, and the median of the pairs' shares: the machine's other work hits both of a pair alike.
     std::vector<double> bakes, replays, shares;
-    for (int i = 0; i < options.repeats; ++i) {
+    for (int i = 0; i < repeats; ++i) {
         const CpuStopwatch bake_time;
-        gather(*bench.tracer);
+        gather(tracer);
         bakes.push_back(bake_time.seconds());
         const CpuStopwatch replay_time;
         recorder.replay();
         replays.push_back(replay_time.seconds());
         shares.push_back(replays.back() / bakes.back());
     }
-    const double rays = static_cast<double>(recorder.ray_count());
+    return {static_cast<double>(recorder.ray_count()), static_cast<double>(recorder.batch_count()), median(bakes),
+            median(replays), median(shares)};
+}
+
+// As `lumel bake` gathers, to the cells by default and to the end; lighting the cells is not part of it.
+void run_replay(const Options& options) {
+    Context context(1);
+    const BenchScene bench(options.scene, {}, context);
+    const LightSet lights(bench.scene, bench.geometry, bench.surfaces);
+    const TexelBuffer& texels = bench.texels;
+    const TexelBlocks blocks = spread_blocks(make_texel_blocks(texels, 0, texels.size()), options.texels);
+    PathOptions path;
+    path.samples = options.samples;
+    path.ao_distance = bench.ao_distance();
+    const Transport to_the_end{bench.scene, bench.geometry, bench.surfaces, lights, *bench.tracer};
+    const SurfaceCells cells = need(make_lit_cells(bench.charts, bench.atlas, to_the_end, path, context));
     std::printf(
-        "scene,texels,samples,rays,rays_per_batch,bake_mrays_per_cpu_second,replay_mrays_per_cpu_second,share\n");
-    std::printf("%s,%zu,%u,%zu,%.1f,%.3f,%.3f,%.3f\n", bench.name.c_str(), range.count, options.samples,
-                recorder.ray_count(), rays / static_cast<double>(recorder.batch_count()), 1e-6 * rays / median(bakes),
-                1e-6 * rays / median(replays), median(shares));
+        "scene,integrator,texels,samples,rays,rays_per_batch,bake_mrays_per_cpu_second,replay_mrays_per_cpu_second,"
+        "share\n");
+    for (const bool to_cells : {true, false}) {
+        path.guided = path.lights_learned = to_cells;
+        const Shares s = measure(*bench.tracer, options.repeats, [&](const Tracer& with) {
+            const Transport transport{bench.scene, bench.geometry, bench.surfaces,
+                                      lights,      with,           to_cells ? &cells : nullptr};
+            need(gather_blocks(blocks, texels, bench.charts, bench.atlas, transport, path, context));
+        });
+        std::printf("%s,%s,%zu,%u,%.0f,%.1f,%.3f,%.3f,%.3f\n", bench.name.c_str(), to_cells ? "cells" : "paths",
+                    blocks.texels.size(), options.samples, s.rays, s.rays / s.batches, 1e-6 * s.rays / s.bake_seconds,
+                    1e-6 * s.rays / s.replay_seconds, s.share);
+    }
 }
 
 }  // namespace
@@ -130,7 +136,7 @@ void add_replay(CLI::App& app) {
     auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand("replay", "The bake's rays per second against a replay of the same rays");
     command->add_option("scene", options->scene, ".glb or .gltf")->required()->check(CLI::ExistingFile);
-    command->add_option("--texels", options->texels, "From the middle of page 0")->check(CLI::Range(1u, 1u << 20));
+    command->add_option("--texels", options->texels, "About so many, in blocks from all over page 0")->check(CLI::Range(1u, 1u << 20));
     command->add_option("--samples", options->samples, "Per texel")->check(CLI::Range(1u, 1u << 16));
     command->add_option("--repeats", options->repeats, "The median of so many is printed")->check(CLI::Range(1, 100));
     command->callback([options] { run_replay(*options); });

@@ -29,7 +29,7 @@ struct Reference {
 
 std::uint32_t samples_per_bake() {
     const char* asked = std::getenv("LUMEL_REFERENCE_SAMPLES");
-    return asked ? static_cast<std::uint32_t>(std::strtoul(asked, nullptr, 10)) : 512;
+    return asked ? static_cast<std::uint32_t>(std::strtoul(asked, nullptr, 10)) : 2048;
 }
 
 // Texels that an edge of a triangle runs through. Cycles gathers such a texel from the one triangle that has its
