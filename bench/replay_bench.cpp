@@ -136,7 +136,8 @@ void add_replay(CLI::App& app) {
     auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand("replay", "The bake's rays per second against a replay of the same rays");
     command->add_option("scene", options->scene, ".glb or .gltf")->required()->check(CLI::ExistingFile);
-    command->add_option("--texels", options->texels, "About so many, in blocks from all over page 0")->check(CLI::Range(1u, 1u << 20));
+    command->add_option("--texels", options->texels, "About so many, in blocks from all over page 0")
+        ->check(CLI::Range(1u, 1u << 20));
     command->add_option("--samples", options->samples, "Per texel")->check(CLI::Range(1u, 1u << 16));
     command->add_option("--repeats", options->repeats, "The median of so many is printed")->check(CLI::Range(1, 100));
     command->callback([options] { run_replay(*options); });

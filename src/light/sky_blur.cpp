@@ -86,12 +86,37 @@ void blur_row(const SkyMap& map, const Cap& cap, std::uint32_t y, Row& out) {
         for (double& channel : pixel) channel *= scale;
 }
 
+// Half the rows and columns, by solid angle. Both are even.
+SkyMap halved(const SkyMap& map) {
+    const std::vector<double> sines = row_edge_sines(map.height);
+    SkyMap out;
+    out.width = map.width / 2;
+    out.height = map.height / 2;
+    out.radiance.reserve(std::size_t{out.width} * out.height);
+    for (std::uint32_t y = 0; y < out.height; ++y) {
+        const double whole = sines[2 * y] - sines[2 * y + 2];
+        const auto lower = static_cast<float>((sines[2 * y + 1] - sines[2 * y + 2]) / whole);
+        const Vec3* const above = &map.radiance[std::size_t{2 * y} * map.width];
+        const Vec3* const below = above + map.width;
+        for (std::uint32_t x = 0; x < map.width; x += 2)
+            out.radiance.push_back((above[x] + above[x + 1]) * (0.5f * (1.0f - lower)) +
+                                   (below[x] + below[x + 1]) * (0.5f * lower));
+    }
+    return out;
+}
+
+// What a cap does to more rows than this it does to half as many: the cost of a blur is that of some million pixels at
+// most, whatever the map.
+constexpr double kMostRows = 32.0;
+
 }  // namespace
 
 SkyMap blur_sky(const SkyMap& map, float half_angle) {
     const double row_angle = kPiDouble / map.height;
     // A cap within one pixel changes nothing.
     if (half_angle < 0.5 * row_angle) return map;
+    if (half_angle > kMostRows * row_angle && map.width % 2 == 0 && map.height % 2 == 0)
+        return blur_sky(halved(map), half_angle);
     const double angle = std::min(static_cast<double>(half_angle), kPiDouble);
     const Cap cap{angle, sincos_radians(angle).cosine};
     SkyMap blurred = map;

@@ -83,5 +83,19 @@ TEST(SkyBlur, AGradientKeepsItsShapeAndLosesContrast) {
         EXPECT_NEAR(blurred.radiance[i].y, expected.radiance[i].y, 2e-3);  // the map's rows are 2.8 degrees
 }
 
+// A cap of many rows leaves nothing that a smaller map could not hold.
+TEST(SkyBlur, OfALargeMapIsASmallerOne) {
+    const float half_angle = 40 * kDegrees;
+    const SkyMap map = test::gradient_sky(1024, 512, 1.0f, 0.9f);
+    const SkyMap blurred = blur_sky(map, half_angle);
+    EXPECT_EQ(blurred.height, 128u) << "40 degrees are 28 of its rows";
+    ASSERT_EQ(blurred.width, 256u);
+    expect_same_integral(map, blurred);
+    const SkyMap expected =
+        test::gradient_sky(blurred.width, blurred.height, 1.0f, 0.9f * 0.5f * (1 + std::cos(half_angle)));
+    for (std::size_t i = 0; i < expected.radiance.size(); ++i)
+        EXPECT_NEAR(blurred.radiance[i].y, expected.radiance[i].y, 1e-3);  // its rows are 1.4 degrees
+}
+
 }  // namespace
 }  // namespace lumel

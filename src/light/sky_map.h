@@ -23,7 +23,8 @@ std::vector<double> row_edge_sines(std::uint32_t height);
 std::array<double, 3> integrate(const SkyMap& map);
 
 // Energy-preserving low-pass: every pixel becomes the mean radiance over a cone of the given half angle (radians, up to
-// pi), then the map is rescaled so that its integral over the sphere is exactly kept per channel.
+// pi), then the map is rescaled so that its integral over the sphere is exactly kept per channel. Where the cone covers
+// more than 32 rows to either side the result has half as many rows and columns, and so on.
 SkyMap blur_sky(const SkyMap& map, float half_angle);
 
 // Finds the sun's disc (the connected set of pixels around the brightest that stand out of the rest), replaces it by

@@ -77,25 +77,36 @@ TEST(StoredPage, ScalesLightThatHalvesDoNotHold) {
         }
 }
 
-// What no chart covers costs nothing, and the ratios of dark texels give way to those of bright ones.
+// The ratios of dark texels give way to those of bright ones, and what no chart covers costs nothing at all.
 TEST(StoredPage, WeighsTexels) {
     Context context(1);
-    EncodedPage page{4, 4, {}, {}};
-    for (std::uint32_t i = 0; i < 16; ++i) {
-        page.texel_at.push_back(i);
-        Numbers numbers{};
-        const bool bright = i < 4;
-        for (std::size_t c = 0; c < 3; ++c) numbers[c] = bright ? 10.0f : 1e-3f;
-        // Bright ones on a line, dark ones all over the place.
-        for (std::size_t f = 3; f < 12; ++f)
-            numbers[f] = bright ? 0.2f * static_cast<float>(i) - 0.3f : std::sin(static_cast<float>(7 * i + 3 * f));
-        page.numbers.push_back(numbers);
-    }
     const auto layout = texture_layout(kL1Hhd, *find_texture_storage("bc1"));
-    const auto back = as_stored(kL1Hhd, layout, page, BcQuality::best, context);
-    ASSERT_TRUE(back.ok());
-    for (std::size_t t = 0; t < 4; ++t)
-        for (std::size_t f = 3; f < 12; ++f) EXPECT_NEAR(back->numbers[t][f], page.numbers[t][f], 0.04f) << t;
+    // Four texels of light 10 with ratios on a line; the others' are all over the place.
+    const auto worst_of_the_four = [&](float light_of_others, bool others_covered) {
+        EncodedPage page{4, 4, {}, {}};
+        for (std::uint32_t i = 0; i < 16; ++i) {
+            const bool on_line = i < 4;
+            page.texel_at.push_back(on_line || others_covered ? i : kNone);
+            Numbers numbers{};
+            for (std::size_t c = 0; c < 3; ++c) numbers[c] = on_line ? 10.0f : light_of_others;
+            for (std::size_t f = 3; f < 12; ++f)
+                numbers[f] =
+                    on_line ? 0.2f * static_cast<float>(i) - 0.3f : std::sin(static_cast<float>(7 * i + 3 * f));
+            page.numbers.push_back(numbers);
+        }
+        const auto back = as_stored(kL1Hhd, layout, page, BcQuality::best, context);
+        EXPECT_TRUE(back.ok());
+        float worst = 0.0f;
+        for (std::size_t t = 0; t < 4; ++t)
+            for (std::size_t f = 3; f < 12; ++f)
+                worst = std::max(worst, std::fabs(back->numbers[t][f] - page.numbers[t][f]));
+        return worst;
+    };
+    // Four colours on a line, with ends of 5 bits: half a step of the ratios, which go from -1 to 1, and a little.
+    constexpr float kExact = 0.04f;
+    EXPECT_LT(worst_of_the_four(1e-3f, true), kExact);
+    EXPECT_LT(worst_of_the_four(10.0f, false), kExact);
+    EXPECT_GT(worst_of_the_four(10.0f, true), 3.0f * kExact) << "the others are no burden: this test says nothing";
 }
 
 }  // namespace
