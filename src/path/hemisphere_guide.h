@@ -22,9 +22,9 @@ class HemisphereGuide {
 public:
     static constexpr std::size_t kRows = 16, kColumns = 32;  // by cosine (GatherHemisphere) and by azimuth
     static constexpr std::size_t kBins = kRows * kColumns;
-    // The least density: a quarter of the paths are as they would be without a guide. What is learned may be wrong, and
+    // The least density: an eighth of the paths are as they would be without a guide. What is learned may be wrong, and
     // occlusion and sky visibility are measured by the same rays.
-    static constexpr float kFloor = 0.25f;
+    static constexpr float kFloor = 0.125f;
 
     // `wanted`: at least zero, of any sum above zero.
     explicit HemisphereGuide(const std::array<float, kBins>& wanted);

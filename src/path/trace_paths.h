@@ -31,7 +31,7 @@ enum Pair : std::uint32_t { kDirectionPair, kSkyPair, kLocalPair, kChoicePair, k
 inline constexpr std::uint32_t kRouletteFrom = 3;  // the first vertex after which a path may be ended by chance
 inline constexpr std::uint32_t kDirectionSalt = 0x51ed270bu;  // of the alpha keys of sampled directions
 inline constexpr float kNearHit =
-    2.0f;  // first hits nearer than so many edges of a cell see its steps: paths go on there
+    1.0f;  // first hits nearer than so many edges of a cell see its steps: paths go on there
 inline constexpr float kShadowShortening =
     1.0f - 1e-4f;  // of shadow rays to finite lights, against hitting the light itself
 
