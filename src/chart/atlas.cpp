@@ -32,12 +32,14 @@ Atlas kept_atlas(const Scene& scene, const WorldGeometry& geometry, const ChartS
                  const ChartOptions& options) {
     Atlas atlas;
     atlas.first_placement = placement_ranges(scene, charts);
-    const AtlasPage page =
-        options.previous ? options.previous->pages.front() : kept_page(scene, geometry, charts, options);
+    const AtlasPage page = kept_page(scene, geometry, charts, options);
     atlas.pages.push_back(page);
     const ChartPlacement placement{0, {static_cast<float>(page.width), static_cast<float>(page.height)}, {}};
     atlas.placements.assign(atlas.first_placement.back(), placement);
-    if (options.previous) atlas.kept = atlas.placements.size();
+    if (options.previous) {
+        const std::vector<std::uint32_t> found = find_in_record(*options.previous, chart_names(scene, charts));
+        atlas.kept = found.size() - static_cast<std::uint64_t>(std::ranges::count(found, kNone));
+    }
     return atlas;
 }
 

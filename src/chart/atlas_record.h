@@ -24,13 +24,13 @@ struct AtlasRecord {
     struct Chart {
         ChartName name;
         std::uint32_t page = 0;
-        ChartBox box;  // on the page, not empty
+        ChartBox box;  // on the page; empty in a scene-wide layout, else not
     };
     std::string where;  // the file, for messages
     bool scene_wide = false;
     double density = 0.0;  // Atlas::density: above 0 but for a kept layout
-    std::vector<AtlasPage> pages;
-    std::vector<Chart> charts;  // those that have a box
+    std::vector<AtlasPage> pages;  // one of a scene-wide layout
+    std::vector<Chart> charts;     // those that lie on a page
 };
 
 // Of each name the chart of the record that it is, or kNone. Where several charts have one id, those in the same place

@@ -20,22 +20,7 @@ using test::expect_clean;
 using test::judge;
 using test::Layout;
 using test::Level;
-
-// As manifest.json has it.
-AtlasRecord record_of(const Level& level, const Layout& l) {
-    AtlasRecord out;
-    out.where = "previous.json";
-    out.scene_wide = l.charts.scene_wide;
-    out.density = l.atlas.density;
-    out.pages = l.atlas.pages;
-    const std::vector<ChartName> names = chart_names(level.scene, l.charts);
-    EXPECT_EQ(names.size(), l.atlas.placements.size());
-    for (std::size_t i = 0; i < names.size(); ++i) {
-        const ChartPlacement& place = l.atlas.placements[i];
-        if (place.box.width > 0) out.charts.push_back({names[i], place.page, place.box});
-    }
-    return out;
-}
+using test::record_of;
 
 Level with_paths(Level level) {
     for (Instance& instance : level.scene.instances) instance.path_hash = Hasher().text(instance.name).finish().low;

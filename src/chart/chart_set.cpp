@@ -11,6 +11,7 @@
 #include "base/check.h"
 #include "base/parallel.h"
 #include "base/try.h"
+#include "chart/atlas_record.h"
 #include "chart/bad_charts.h"
 #include "chart/kept_layout.h"
 #include "chart/mesh_charts.h"
@@ -115,6 +116,7 @@ private:
             overlaps);
         for (const std::uint32_t m : used_.meshes) charts_.meshes[m] = uv1_islands(mesh(m), topology_[m].area, 1.0f);
         charts_.scene_wide = true;
+        if (options_.previous) LUMEL_TRY_STATUS(check_record(*options_.previous, charts_, options_));
         const AtlasPage page = kept_page(scene_, geometry_, charts_, options_);
         const std::vector<ChartContact> contacts = find_contacts(scene_, geometry_, charts_, page);
         merge_contacts(scene_, contacts, charts_);

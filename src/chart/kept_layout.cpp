@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "chart/atlas_record.h"
 #include "chart/chart_mask.h"
 #include "chart/mesh_charts.h"
 #include "chart/overlap.h"
@@ -80,6 +81,7 @@ bool goes_on(const WorldGeometry& geometry, const ChartSet& charts, const Scene&
 
 AtlasPage kept_page(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts,
                     const ChartOptions& options) {
+    if (options.previous) return options.previous->pages.front();
     if (options.resolution_width != 0) return {options.resolution_width, options.resolution_height};
     double world = 0.0, uv = 0.0;
     for (std::uint32_t t = 0; t < geometry.triangle_count(); ++t) {

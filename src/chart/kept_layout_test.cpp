@@ -174,6 +174,55 @@ TEST(KeptLayout, IslandsThatShareTexelsAreOneChart) {
     EXPECT_TRUE(packed.told_nothing());
 }
 
+// A layout that is kept from a record has the page of then, whatever page the options would lead to: what shares texels
+// on it is told, and is one chart, as then.
+TEST(KeptLayout, ChartsAreJudgedOnThePageOfTheRecord) {
+    const Level apart = level_of(floor_with_uv1({0.0f, 0.0f}, {0.495f, 1}), floor_with_uv1({0.505f, 0}, {0.495f, 1}));
+    const Level one =
+        level_of(joined(floor_with_uv1({0, 0}, {0.495f, 1}), floor_with_uv1({0.505f, 0}, {0.495f, 1}), {9, 0, 0}));
+    for (const Level* level : {&apart, &one}) {
+        for (const std::uint32_t edge : {32u, 512u}) {
+            const LaidOut then(*level, square_page(edge));
+            const AtlasRecord record = test::record_of(*level, then);
+            ChartOptions options;
+            options.texel_budget = edge == 32 ? 250000.0 : 500.0;  // a page of 504, or of 24
+            options.previous = &record;
+            const LaidOut now(*level, options);
+            EXPECT_EQ(now.atlas.pages[0].width, edge);
+            EXPECT_EQ(now.count("uv-bleeding"), edge == 32 ? 64u : 0u);
+            EXPECT_EQ(now.first_example("uv-bleeding"), then.first_example("uv-bleeding"));
+            EXPECT_EQ(now.charts.meshes[0].charts.size(), then.charts.meshes[0].charts.size());
+            EXPECT_EQ(now.atlas.kept, then.atlas.placements.size());
+        }
+    }
+    // A page that the options rule out is an error before its texels are looked at.
+    const LaidOut then(apart, square_page(512));
+    const AtlasRecord record = test::record_of(apart, then);
+    ChartOptions options;
+    options.max_page = 256;
+    options.previous = &record;
+    Context context(1);
+    const auto refused = make_charts(apart.scene, apart.geometry, options, context);
+    ASSERT_FALSE(refused.ok());
+    EXPECT_NE(refused.error().message.find("--max-page 256"), std::string::npos) << refused.error().text();
+}
+
+// Where TEXCOORD_1 was edited, or a node has another name, it is another chart that lies there.
+TEST(KeptLayout, EditedChartsAreNotCountedAsKept) {
+    const Level level = two_floors();
+    const LaidOut then(level, square_page(64));
+    const AtlasRecord record = test::record_of(level, then);
+    ChartOptions options;
+    options.previous = &record;
+    EXPECT_EQ(LaidOut(level, options).atlas.kept, 2u);
+    const Level edited =
+        level_of(floor_with_uv1({0.05f, 0.05f}, {0.4f, 0.4f}), floor_with_uv1({0.55f, 0.05f}, {0.4f, 0.3f}));
+    EXPECT_EQ(LaidOut(edited, options).atlas.kept, 1u);
+    Level renamed = two_floors();
+    for (Instance& instance : renamed.scene.instances) instance.path_hash += 77;
+    EXPECT_EQ(LaidOut(renamed, options).atlas.kept, 0u);
+}
+
 // Tiles of one floor, side by side in space as in the layout, without any padding: their light goes on, nothing
 // bleeds.
 TEST(KeptLayout, ChartsThatGoOnInEachOtherDoNotBleed) {

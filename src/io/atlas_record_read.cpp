@@ -99,12 +99,14 @@ Result<std::size_t> read_instance(const Json& instance, const ChartArrays& array
     for (std::size_t c = first; c < end; ++c) {
         const std::string here = where + ", chart " + std::to_string(c);
         const Json &page = (*arrays.page)[c], &box = (*arrays.box)[c];
-        if (page.is_null() || box.is_null()) continue;
+        if (page.is_null() || (box.is_null() && !out.scene_wide)) continue;
         if (!page.is_number_unsigned() || page.get<std::uint64_t>() >= out.pages.size())
             return invalid(here, "lies on a page that is not described", kGiveAManifest);
         AtlasRecord::Chart chart;
         chart.page = page.get<std::uint32_t>();
-        LUMEL_TRY(chart.box, parse_box(box, out.pages[chart.page], here));
+        if (!box.is_null()) {
+            LUMEL_TRY(chart.box, parse_box(box, out.pages[chart.page], here));
+        }
         LUMEL_TRY(chart.name.id, parse_id((*arrays.id)[c], here));
         chart.name.place = place;
         out.charts.push_back(chart);
@@ -121,6 +123,9 @@ Result<AtlasRecord> parse_atlas_record(std::string_view text, const std::string&
     LUMEL_TRY(out.pages, read_pages(root, where));
     LUMEL_TRY(const ChartArrays arrays, chart_arrays(root, where));
     LUMEL_TRY(out.scene_wide, bool_or(root, "scene_wide_uvs", false, where));
+    if (out.scene_wide && out.pages.size() != 1)
+        return invalid(where, "is of one atlas of the scene, yet has " + std::to_string(out.pages.size()) + " pages",
+                       kGiveAManifest);
     LUMEL_TRY(out.density, number_or(root, "density", 0.0, where));
     if (!(out.density >= 0.0 && out.density <= 1e9) || (out.density == 0.0 && !out.scene_wide))
         return invalid(where, "has no density that a layout could have been drawn at", kGiveAManifest);

@@ -44,6 +44,20 @@ TEST(AtlasRecordRead, TakesWhatIsPlaced) {
     EXPECT_EQ(record->charts[1].box, (ChartBox{54, 24, 10, 8}));
 }
 
+// Charts of a scene-wide TEXCOORD_1 have no boxes, and names all the same.
+TEST(AtlasRecordRead, TakesTheNamesOfASceneWideLayout) {
+    Json json = good();
+    json["density"] = 0;
+    json["scene_wide_uvs"] = true;
+    json["charts"]["page"] = {0, 0, 0};
+    json["charts"]["box"] = {nullptr, nullptr, nullptr};
+    const Result<AtlasRecord> record = parse_atlas_record(json.dump(), "atlas.json");
+    ASSERT_TRUE(record.ok()) << record.error().text();
+    ASSERT_EQ(record->charts.size(), 3u);
+    EXPECT_EQ(record->charts[1].name.id, 0xffffffffffffffffu);
+    EXPECT_EQ(record->charts[1].box, ChartBox{});
+}
+
 TEST(AtlasRecordRead, SaysWhatIsWrong) {
     const auto with = [](const char* pointer, const Json& value) {
         Json json = good();
@@ -83,6 +97,8 @@ TEST(AtlasRecordRead, SaysWhatIsWrong) {
     kept["density"] = 0;
     kept["scene_wide_uvs"] = true;
     EXPECT_EQ(error_of(kept), "no error");
+    kept["pages"].push_back({{"width", 64}, {"height", 32}});
+    says(error_of(kept), "is of one atlas of the scene, yet has 2 pages");
 }
 
 }  // namespace

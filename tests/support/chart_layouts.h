@@ -5,6 +5,7 @@
 
 #include <memory>
 
+#include "chart/atlas_record.h"
 #include "chart/chart_set.h"
 #include "support/chart_checker.h"
 #include "support/meshes.h"
@@ -58,6 +59,22 @@ inline Layout layout(const Level& level, const ChartOptions& options, Context& c
     EXPECT_TRUE(atlas.ok()) << (atlas.ok() ? "" : atlas.error().text());
     if (!atlas.ok()) return {};
     return {std::move(*charts), std::move(*atlas)};
+}
+
+// As manifest.json has it.
+inline AtlasRecord record_of(const Level& level, const Layout& l) {
+    AtlasRecord out;
+    out.where = "previous.json";
+    out.scene_wide = l.charts.scene_wide;
+    out.density = l.atlas.density;
+    out.pages = l.atlas.pages;
+    const std::vector<ChartName> names = chart_names(level.scene, l.charts);
+    EXPECT_EQ(names.size(), l.atlas.placements.size());
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        const ChartPlacement& place = l.atlas.placements[i];
+        if (place.page != kNone) out.charts.push_back({names[i], place.page, place.box});
+    }
+    return out;
 }
 
 inline LayoutReport judge(const Level& level, const Layout& l) {
