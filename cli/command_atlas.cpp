@@ -33,10 +33,7 @@ Status run_in(const Options& options, RunContext& run) {
     const ChartOptions chart = chart_options(bake_options);
     LUMEL_TRY(const LoadedScene loaded, load_scene(options.scene, context));
     LUMEL_TRY(AtlasWriter writer, AtlasWriter::create(options.output));
-    run.interrupt().set_cleaner([partial = writer.partial()] {
-        std::error_code ignored;
-        std::filesystem::remove_all(partial, ignored);
-    });
+    run.interrupt().set_cleaner(writer.cleaner());
     const Scene& scene = loaded.scene;
     LUMEL_TRY(const WorldGeometry geometry, flatten(scene, context));
     LUMEL_TRY(const ChartSet charts, make_charts(scene, geometry, chart, context));

@@ -108,10 +108,7 @@ Status write_pages(const Options& options, const Choice& choice, const MasterLis
     Context& context = run.get();
     const fs::path folder = options.output.empty() ? options.folder : options.output;
     LUMEL_TRY(EncodedOutput output, EncodedOutput::create(folder, *choice.encoding, record, choice.target));
-    run.interrupt().set_cleaner([partial = output.partial()] {
-        std::error_code ignored;
-        fs::remove_all(partial, ignored);
-    });
+    run.interrupt().set_cleaner(output.cleaner());
     for (std::size_t p = 0; p < masters.pages.size(); ++p) {
         LUMEL_TRY(const MasterPage master, read_master(masters.pages[p], layers));
         LUMEL_TRY(const EncodedPage page, encode_page(*choice.encoding, master, context));

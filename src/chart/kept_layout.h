@@ -5,8 +5,8 @@
 
 namespace lumel {
 
-// The page: that of the layout to keep, else of the asked resolution, else square, its edge such that the mean density (over area) or the texel budget is
-// met; a multiple of 4 within max_page.
+// The page: that of the layout to keep, else of the asked resolution, else square, its edge such that the mean density
+// (over area) or the texel budget is met; a multiple of 4 within max_page.
 AtlasPage kept_page(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts,
                     const ChartOptions& options);
 

@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "base/cancelled.h"
@@ -17,6 +15,7 @@
 #include "io/baked.h"
 #include "io/image_io.h"
 #include "io/layout_json.h"
+#include "io/page_files.h"
 
 namespace lumel {
 namespace {
@@ -30,20 +29,14 @@ constexpr std::array<const char*, 4> kPictures{"charts", "waste", "density", "st
 
 constexpr Vec3 kFreeColor{0.86f, 0.16f, 0.16f}, kBorderColor{0.96f, 0.76f, 0.22f}, kCoveredColor{0.24f, 0.29f, 0.36f};
 
+std::string picture_stem(const char* what) { return std::string("atlas_") + what + "_"; }
 std::string picture_file(const char* what, std::uint32_t page) {
-    return std::string("atlas_") + what + "_" + std::to_string(page) + ".png";
+    return picture_stem(what) + std::to_string(page) + ".png";
 }
 
-// atlas_<what>_<number>.png
 bool is_picture_file(const std::string& name) {
-    return std::ranges::any_of(kPictures, [&](const char* what) {
-        const std::string stem = std::string("atlas_") + what + "_", extension = ".png";
-        if (!name.starts_with(stem) || !name.ends_with(extension) || name.size() <= stem.size() + extension.size())
-            return false;
-        return std::all_of(name.begin() + static_cast<std::ptrdiff_t>(stem.size()),
-                           name.end() - static_cast<std::ptrdiff_t>(extension.size()),
-                           [](char c) { return c >= '0' && c <= '9'; });
-    });
+    return std::ranges::any_of(kPictures,
+                               [&](const char* what) { return is_numbered(name, picture_stem(what), ".png"); });
 }
 
 // What is drawn: all pages in one scale.
@@ -115,16 +108,8 @@ Json statistics_json(const AtlasStatistics& s, const Atlas& atlas) {
 }  // namespace
 
 Result<AtlasWriter> AtlasWriter::create(const fs::path& folder) {
-    // As manifest.json does, it says near its beginning who wrote it.
-    const fs::path file = folder / kAtlasFile;
-    char head[256] = {};
-    std::ifstream stream(file, std::ios::binary);
-    const bool exists = stream.is_open();
-    stream.read(head, sizeof head - 1);
-    if (exists && std::string_view(head).find("\"Lumel\"") == std::string_view::npos)
-        return Error{ErrorCode::io, "exists and would be replaced, but no lumel atlas wrote it", file.string(),
-                     "choose another folder with -o, or move the file away"};
-    LUMEL_TRY(FileSet files, FileSet::create(folder, "atlas"));
+    // As manifest.json does, atlas.json says near its beginning who wrote it.
+    LUMEL_TRY(FileSet files, FileSet::create(folder, {"atlas", "atlas", "\"Lumel\"", is_picture_file}));
     return AtlasWriter(std::move(files));
 }
 
@@ -158,7 +143,6 @@ Result<AtlasStatistics> AtlasWriter::write(const Scene& scene, const WorldGeomet
         if (!done) return cancelled_error();
         for (const Status& status : written)
             if (!status.ok()) return files_.in_place(status.error());
-        for (const char* what : kPictures) pictures_.push_back(picture_file(what, p));
         context.report("pictures", static_cast<double>(p + 1) / static_cast<double>(atlas.pages.size()));
     }
     if (statistics.page_texels > 0)
@@ -178,6 +162,6 @@ Result<AtlasStatistics> AtlasWriter::write(const Scene& scene, const WorldGeomet
     return statistics;
 }
 
-Status AtlasWriter::commit() { return files_.commit(kAtlasFile, pictures_, is_picture_file); }
+Status AtlasWriter::commit() { return files_.commit(); }
 
 }  // namespace lumel

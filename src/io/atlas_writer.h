@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 
 #include "chart/chart_set.h"
 #include "io/file_set.h"
@@ -26,11 +27,11 @@ struct AtlasStatistics {
 
 class AtlasWriter {
 public:
-    // Errors: io, where the folder cannot be written to or an atlas.json that is not ours would be replaced.
+    // Errors: io, where the folder cannot be written to or files of these names that no atlas wrote would be replaced.
     static Result<AtlasWriter> create(const std::filesystem::path& folder);
 
-    // Where unfinished files are.
-    [[nodiscard]] const std::filesystem::path& partial() const { return files_.partial(); }
+    // FileSet::cleaner.
+    [[nodiscard]] std::function<void()> cleaner() const { return files_.cleaner(); }
 
     // Pictures of all pages and atlas.json. Errors: io; cancelled.
     Result<AtlasStatistics> write(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts,
@@ -40,9 +41,9 @@ public:
 
 private:
     explicit AtlasWriter(FileSet files) : files_(std::move(files)) {}
+    [[nodiscard]] const std::filesystem::path& partial() const { return files_.partial(); }
 
     FileSet files_;
-    std::vector<std::string> pictures_;
 };
 
 }  // namespace lumel

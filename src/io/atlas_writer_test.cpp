@@ -146,6 +146,15 @@ TEST_F(AtlasFolder, LeavesWhatIsNotOursAlone) {
     EXPECT_EQ(names_in(out), Names{"atlas.json"});
 }
 
+TEST_F(AtlasFolder, PicturesThatNoAtlasWroteAreNotTouched) {
+    fs::create_directories(out);
+    std::ofstream(out / "atlas_charts_7.png") << "somebody's";
+    const auto writer = AtlasWriter::create(out);
+    ASSERT_FALSE(writer.ok());
+    EXPECT_EQ(writer.error().where, (out / "atlas_charts_7.png").string());
+    EXPECT_EQ(names_in(out), Names{"atlas_charts_7.png"});
+}
+
 TEST_F(AtlasFolder, IsNotWrittenWhereTheRunIsCancelled) {
     auto writer = AtlasWriter::create(out);
     ASSERT_TRUE(writer.ok());

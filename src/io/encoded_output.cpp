@@ -8,6 +8,7 @@
 #include "io/image_io.h"
 #include "io/json_write.h"
 #include "io/light_json.h"
+#include "io/output_folder.h"
 #include "io/page_files.h"
 
 namespace lumel {
@@ -59,7 +60,9 @@ EncodedOutput::EncodedOutput(FileSet files, const Encoding& encoding, LightRecor
 
 Result<EncodedOutput> EncodedOutput::create(const fs::path& folder, const Encoding& encoding, const LightRecord& record,
                                             const EncodedTarget& target) {
-    LUMEL_TRY(FileSet files, FileSet::create(folder, encoded_stem(encoding.name)));
+    const auto is_page = [&encoding](const std::string& file) { return is_encoded_page_file(encoding, file); };
+    LUMEL_TRY(FileSet files,
+              FileSet::create(folder, {"encoding", encoded_stem(encoding.name), "\"encoding\"", is_page}));
     return EncodedOutput(std::move(files), encoding, record, target);
 }
 
@@ -108,19 +111,11 @@ std::string EncodedOutput::json() const {
     return out.dump(2) + "\n";
 }
 
-std::vector<std::string> EncodedOutput::files() const {
-    if (textures_) return textures_->files();
-    std::vector<std::string> out;
-    for (std::uint32_t p = 0; p < pages_.size(); ++p) out.push_back(encoded_page_file(encoding_->name, p));
-    return out;
-}
-
 Status EncodedOutput::commit(const MasterList& source) {
     const std::string name = encoded_stem(encoding_->name) + ".json", text = json();
     const Status written = write_file(partial() / name, std::as_bytes(std::span(text)));
     if (!written.ok()) return files_.in_place(written.error());
-    const auto is_page = [&](const std::string& file) { return is_encoded_page_file(*encoding_, file); };
-    return files_.commit(name, files(), is_page, [&] { return check_unchanged(source); });
+    return files_.commit([&] { return check_unchanged(source); });
 }
 
 }  // namespace lumel

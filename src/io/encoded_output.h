@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,6 +25,8 @@ public:
 
     // Where unfinished files are.
     [[nodiscard]] const std::filesystem::path& partial() const { return files_.partial(); }
+    // FileSet::cleaner.
+    [[nodiscard]] std::function<void()> cleaner() const { return files_.cleaner(); }
 
     // Writes the next page.
     Status page(const EncodedPage& page, Context& context);
@@ -41,7 +44,6 @@ private:
     EncodedOutput(FileSet files, const Encoding& encoding, LightRecord record, const EncodedTarget& target);
     Status write_exr_page(const EncodedPage& page, Context& context);
     [[nodiscard]] std::string json() const;
-    [[nodiscard]] std::vector<std::string> files() const;
 
     FileSet files_;
     const Encoding* encoding_;

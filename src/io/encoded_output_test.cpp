@@ -123,6 +123,7 @@ TEST_F(EncodedFiles, OfPagesOfOneSizeAreLayers) {
 }
 
 TEST_F(EncodedFiles, AppearTogetherAndReplaceAllOlderOnes) {
+    put(bake_ / "encoded_irradz-hhd.json", R"({"version": 1, "encoding": "irradz-hhd"})");
     put(bake_ / "encoded_irradz-hhd_1.exr", "older");
     put(bake_ / "encoded_irradz-hhd_12.exr", "older");
     put(bake_ / "encoded_l2_1.exr", "another");

@@ -1,74 +1,85 @@
 #include "io/file_set.h"
 
-#include <algorithm>
-#include <utility>
-#include <vector>
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
 
 #include "base/try.h"
 #include "io/atomic_file.h"
+#include "io/page_files.h"
 
 namespace lumel {
 namespace {
 
 namespace fs = std::filesystem;
 
-Status move_file(const fs::path& from, const fs::path& to) {
-    std::error_code error;
-    fs::rename(from, to, error);
-    if (error) return system_error("moving into place", to, error.value());
-    return success();
-}
+// What is not finished begins with this, whatever it is: names that nobody else gives, out of sight.
+constexpr const char* kHidden = ".lumel-";
 
-// The partial folder of a FileSet is of no interest by now.
-void remove_if_empty(const fs::path& folder, OutputFolder& partial) {
-    { const OutputFolder gone(std::move(partial)); }
-    std::error_code ignored;
-    fs::remove(folder, ignored);
+FileGroup group_in(const fs::path& folder, const FileSetKind& kind) {
+    const std::string json = kind.stem + ".json";
+    return {folder,
+            folder / (kHidden + kind.stem),
+            kind.maker,
+            json,
+            kind.signature,
+            [json, is_member = kind.is_member](const std::string& name) { return name == json || is_member(name); }};
 }
 
 }  // namespace
 
-Result<FileSet> FileSet::create(const fs::path& folder, const std::string& stem) {
+Result<FileSet> FileSet::create(const fs::path& folder, const FileSetKind& kind) {
     std::error_code error;
+    const FileGroup group = group_in(folder, kind);
     const bool is_new = !fs::exists(fs::symlink_status(folder, error));
-    LUMEL_TRY(OutputFolder partial, OutputFolder::create(folder / stem));
-    return FileSet(folder, is_new, std::move(partial));
+    if (!is_new && !fs::is_directory(folder, error))
+        return Error{ErrorCode::io, "is not a folder", folder.string(), "choose another folder with -o"};
+    if (is_new) fs::create_directories(folder, error);
+    if (error) return system_error("creating the folder", folder, error.value());
+    if (::access(folder.c_str(), W_OK | X_OK) != 0) return system_error("writing to the folder", folder, errno);
+    {
+        LUMEL_TRY(const FolderLock lock, lock_folder(folder));
+        LUMEL_TRY_STATUS(recover(group));
+        LUMEL_TRY_STATUS(check_not_foreign(group, folder));
+    }
+    remove_stale_partials(folder, kHidden);
+    LUMEL_TRY(PartialFolder partial, PartialFolder::create(folder, kHidden + kind.stem, [&](const std::string& number) {
+                  return group.is_number_taken(number);
+              }));
+    return FileSet(group, is_new, std::move(partial));
 }
 
 FileSet::~FileSet() {
-    if (is_new_ && !partial_.path().empty()) remove_if_empty(folder_, partial_);
+    if (partial().empty()) return;
+    partial_.remove();
+    std::error_code ignored;
+    if (is_new_) fs::remove(group_.folder, ignored);  // only where it is empty
 }
 
-Error FileSet::in_place(Error error) const {
-    const std::string unfinished = partial().string();
-    if (error.where.starts_with(unfinished)) error.where.replace(0, unfinished.size(), folder_.string());
-    return error;
+std::function<void()> FileSet::cleaner() const {
+    return [partial = partial(), folder = group_.folder, is_new = is_new_] {
+        std::error_code ignored;
+        fs::remove_all(partial, ignored);
+        if (is_new) fs::remove(folder, ignored);
+    };
 }
 
-Status FileSet::remove_older(std::span<const std::string> files,
-                             const std::function<bool(const std::string&)>& is_member) const {
-    std::error_code error;
-    std::vector<fs::path> older;
-    for (fs::directory_iterator at(folder_, error), end; !error && at != end; at.increment(error)) {
-        const std::string name = at->path().filename().string();
-        if (is_member(name) && std::ranges::find(files, name) == files.end()) older.push_back(at->path());
-    }
-    if (error) return system_error("listing the folder", folder_, error.value());
-    for (const fs::path& file : older)
-        if (fs::remove(file, error); error) return system_error("removing an older page", file, error.value());
-    return success();
-}
-
-Status FileSet::commit(const std::string& json, std::span<const std::string> files,
-                       const std::function<bool(const std::string&)>& is_member, const std::function<Status()>& check) {
-    LUMEL_TRY(const FolderLock lock, lock_folder(folder_));
+Status FileSet::commit(const std::function<Status()>& check) {
+    LUMEL_TRY(const FolderLock lock, lock_folder(group_.folder));
     if (check) LUMEL_TRY_STATUS(check());
-    std::error_code error;
-    fs::remove(folder_ / json, error);
-    if (error) return system_error("replacing the file", folder_ / json, error.value());
-    for (const std::string& file : files) LUMEL_TRY_STATUS(move_file(partial() / file, folder_ / file));
-    LUMEL_TRY_STATUS(remove_older(files, is_member));
-    return move_file(partial() / json, folder_ / json);
+    return replace_group(group_, partial(), partial_.number());
+}
+
+void remove_leftovers(const fs::path& folder) {
+    remove_stale_partials(folder, kHidden);
+    std::error_code ignored;
+    const std::string encoded = kHidden + encoded_stem("");
+    std::vector<fs::path> left;
+    for (fs::directory_iterator at(folder, ignored), end; !ignored && at != end; at.increment(ignored))
+        if (at->path().filename().string().starts_with(encoded)) left.push_back(at->path());
+    for (const fs::path& path : left)
+        if (path.filename().string().find(kPartial) == std::string::npos) fs::remove_all(path, ignored);
 }
 
 }  // namespace lumel

@@ -1,54 +1,21 @@
 #include "io/output_folder.h"
 
-#include <fcntl.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <fstream>
-#include <functional>
-#include <limits>
 #include <set>
 
+#include "support/failing_files.h"
 #include "support/temporary_folder.h"
 
 namespace lumel {
 namespace {
 
-// ---- A process that dies, or whose disk fails, after some steps -----------------------------------------------------
-
-constexpr int kNever = std::numeric_limits<int>::max();
-constexpr int kDied = 77;
-int steps_left = kNever;
-bool fails_then = false;  // every step from there on, instead of dying
-
-// False: the step fails.
-bool may_step() {
-    if (steps_left == kNever || steps_left-- > 0) return true;
-    if (!fails_then) ::_exit(kDied);
-    steps_left = 0;
-    errno = EIO;
-    return false;
-}
-
-}  // namespace
-
-// The standard library renames and removes by these, which stand before those of the C library here.
-extern "C" {
-[[gnu::visibility("default")]] int rename(const char* from, const char* to) noexcept {
-    return may_step() ? ::renameat(AT_FDCWD, from, AT_FDCWD, to) : -1;
-}
-[[gnu::visibility("default")]] int remove(const char* path) noexcept {
-    if (!may_step()) return -1;
-    if (::unlink(path) == 0) return 0;
-    return errno == EISDIR || errno == EPERM ? ::rmdir(path) : -1;
-}
-}
-
-namespace {
-
 namespace fs = std::filesystem;
+using test::in_a_process;
+using test::kDied;
+using test::kNever;
 using test::TemporaryFolder;
 
 void put(const fs::path& path, const std::string& text) { std::ofstream(path) << text; }
@@ -204,21 +171,6 @@ const Names kOldNames{"manifest.json", "scene.glb", "lightmap_0.exr", "lightmap_
 const Names kNewNames{"manifest.json", "scene.glb", "lightmap_0.exr", "preview_view_0.png"};
 constexpr const char* kNewManifest = R"({ "version": 1, "generator": "Lumel", "new": true })";
 
-// Does something in a process of its own that is stopped after so many steps. True: it came to its end before that.
-bool in_a_process(int steps, bool fails, const std::function<void()>& work) {
-    const pid_t child = ::fork();
-    if (child == 0) {
-        steps_left = steps;
-        fails_then = fails;
-        work();
-        ::_exit(steps_left == 0 && fails ? kDied : 0);
-    }
-    int status = 0;
-    EXPECT_EQ(::waitpid(child, &status, 0), child);
-    EXPECT_TRUE(WIFEXITED(status) && (WEXITSTATUS(status) == 0 || WEXITSTATUS(status) == kDied)) << status;
-    return WIFEXITED(status) && WEXITSTATUS(status) == 0;
-}
-
 // Bakes over an older bake, stopped after so many steps of commit().
 bool replace(const fs::path& out, int steps, bool fails) {
     fs::create_directory(out);
@@ -228,10 +180,10 @@ bool replace(const fs::path& out, int steps, bool fails) {
         auto output = OutputFolder::create(out);
         if (!output.ok()) ::_exit(1);
         for (const std::string& name : kNewNames) put(output->path() / name, kNewManifest);
-        steps_left = steps;
-        fails_then = fails;
+        test::steps_left = steps;
+        test::fails_then = fails;
         (void)output->commit();
-        ::_exit(steps_left < 0 || (steps_left == 0 && fails) ? kDied : 0);
+        ::_exit(test::steps_left < 0 || (test::steps_left == 0 && fails) ? kDied : 0);
     });
 }
 

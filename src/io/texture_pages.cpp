@@ -1,6 +1,5 @@
 #include "io/texture_pages.h"
 
-#include <algorithm>
 #include <array>
 
 #include "base/check.h"
@@ -87,7 +86,6 @@ Status TexturePages::add(const EncodedPage& page, Context& context) {
     std::vector<Place> places;
     for (std::size_t t = 0; t < layout_.size(); ++t) {
         LUMEL_TRY(Place place, add_texture(t, page, context));
-        if (std::ranges::find(files_, place.file) == files_.end()) files_.push_back(place.file);
         places.push_back(std::move(place));
     }
     pages_.push_back(std::move(places));

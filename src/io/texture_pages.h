@@ -22,7 +22,6 @@ public:
     // Errors: io, cancelled.
     Status add(const EncodedPage& page, Context& context);
 
-    [[nodiscard]] const std::vector<std::string>& files() const { return files_; }
     [[nodiscard]] const std::vector<StoredTexture>& layout() const { return layout_; }
 
     // Where a texture of a page is.
@@ -44,7 +43,6 @@ private:
     std::vector<StoredTexture> layout_;
     std::vector<TextureArray> layers_;  // of each texture, those so far
     std::vector<std::vector<Place>> pages_;
-    std::vector<std::string> files_;
 };
 
 }  // namespace lumel

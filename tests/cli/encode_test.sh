@@ -62,7 +62,7 @@ expect 2 '--table prints' encode lit --table -o elsewhere
 expect 2 '--table prints' encode lit --table --format exr
 expect 2 '--table-texels needs' encode lit --encoding l2 --table-texels 50
 expect 1 'nowhere' encode nowhere --encoding l2
-compgen -G 'lit/*.partial-*' >/dev/null && complain "left $(echo lit/*.partial-*)"
+compgen -G 'lit/.lumel-*' >/dev/null && complain "left $(echo lit/.lumel-*)"
 
 # The encoded files are of this bake: they go when another takes its place, and those elsewhere stay.
 expect 0 '' bake ok.gltf -o lit "${quick[@]}" --progress none
