@@ -14,7 +14,8 @@ namespace lumel {
 namespace {
 
 constexpr double kPlanarCos = 0.9994;        // 2 degrees
-constexpr double kSamePlaneCos = 0.99998;    // 0.36 degrees: many in a row stay within the above
+constexpr double kSamePlaneCos = 0.99998;    // 0.36 degrees
+constexpr double kNearShare = 1e-4;          // of the shorter edge: how near two that touch are
 constexpr double kAntiparallelCos = 0.9999;  // 0.8 degrees: the ends decide how near edges are
 
 Eigen::Vector3d to_double(Vec3 v) { return {v.x, v.y, v.z}; }
@@ -44,37 +45,51 @@ std::vector<BorderEdge> border_edges(const Mesh& mesh, const MeshTopology& topol
     return out;
 }
 
+// Does the edge come as near to the box? By the axes of the box: exact but for the corners of what surrounds it.
+bool comes_near(const BorderEdge& edge, const Eigen::AlignedBox3d& box, double margin) {
+    double first = 0.0, last = edge.length;
+    for (Eigen::Index c = 0; c < 3; ++c) {
+        const double low = box.min()[c] - margin - edge.from[c], high = box.max()[c] + margin - edge.from[c];
+        const double d = edge.direction[c];
+        if (d == 0.0) {
+            if (low > 0.0 || high < 0.0) return false;
+            continue;
+        }
+        first = std::max(first, std::min(low / d, high / d));
+        last = std::min(last, std::max(low / d, high / d));
+    }
+    return first <= last;
+}
+
 // ---- A tree of their boxes ------------------------------------------------------------------------------------------
 
 class EdgeTree {
 public:
-    EdgeTree(const std::vector<BorderEdge>& edges, double margin) : edges_(edges), margin_(margin) {
+    explicit EdgeTree(const std::vector<BorderEdge>& edges) : edges_(edges) {
         order_.resize(edges.size());
         std::iota(order_.begin(), order_.end(), 0u);
         if (!edges.empty()) build(0, static_cast<std::uint32_t>(order_.size()));
     }
 
-    // Calls visit(j) for the edges whose boxes come near that of edge i; stops after as many as no clean mesh has.
+    // Calls visit(j) for the edges to whose boxes edge i comes as near; stops after as many as no clean mesh has.
     template <class Visit>
-    void query(std::uint32_t i, const Visit& visit) const {
+    void query(std::uint32_t i, double margin, const Visit& visit) const {
         constexpr std::uint32_t kMostVisits = 4096;
         if (nodes_.empty()) return;
-        Eigen::AlignedBox3d box = edges_[i].box;
-        box.min().array() -= margin_;
-        box.max().array() += margin_;
         std::uint32_t visits = 0;
         std::vector<std::uint32_t> stack{0};
         while (!stack.empty()) {
             const std::uint32_t self = stack.back();
             const Node& node = nodes_[self];
             stack.pop_back();
-            if (!node.box.intersects(box)) continue;
+            if (!comes_near(edges_[i], node.box, margin)) continue;
             if (node.right != 0) {
                 stack.push_back(node.right);
                 stack.push_back(self + 1);
                 continue;
             }
             for (std::uint32_t k = node.first; k < node.last; ++k) {
+                if (!comes_near(edges_[i], edges_[order_[k]].box, margin)) continue;
                 if (++visits > kMostVisits) return;
                 visit(order_[k]);
             }
@@ -109,7 +124,6 @@ private:
     }
 
     const std::vector<BorderEdge>& edges_;
-    double margin_;
     std::vector<std::uint32_t> order_;
     std::vector<Node> nodes_;
 };
@@ -118,7 +132,7 @@ private:
 
 std::optional<SmoothContact> touch(const BorderEdge& a, const BorderEdge& b, double rounding) {
     if (a.direction.dot(b.direction) > -kAntiparallelCos) return std::nullopt;
-    const double near = std::max(rounding, 1e-4 * std::min(a.length, b.length));
+    const double near = std::max(rounding, kNearShare * std::min(a.length, b.length));
     const double from = std::max(0.0, a.along(b.at(b.length))), to = std::min(a.length, a.along(b.from));
     if (to - from <= 10.0 * near) return std::nullopt;
     const double b_from = b.along(a.at(from)), b_to = b.along(a.at(to));
@@ -134,10 +148,10 @@ std::vector<SmoothContact> t_junctions(const Mesh& mesh, const MeshTopology& top
     for (const BorderEdge& e : edges)
         largest = std::max({largest, e.box.min().cwiseAbs().maxCoeff(), e.box.max().cwiseAbs().maxCoeff()});
     const double rounding = largest * 0x1p-21;
-    const EdgeTree tree(edges, rounding);
+    const EdgeTree tree(edges);
     std::vector<SmoothContact> contacts;
     for (std::uint32_t i = 0; i < edges.size(); ++i)
-        tree.query(i, [&](std::uint32_t j) {
+        tree.query(i, std::max(rounding, kNearShare * edges[i].length), [&](std::uint32_t j) {
             if (j <= i || edges[i].edge / 3 == edges[j].edge / 3) return;
             if (dot(topology.normal[edges[i].edge / 3], topology.normal[edges[j].edge / 3]) < kPlanarCos) return;
             if (const std::optional<SmoothContact> contact = touch(edges[i], edges[j], rounding))
@@ -148,32 +162,70 @@ std::vector<SmoothContact> t_junctions(const Mesh& mesh, const MeshTopology& top
     return contacts;
 }
 
+namespace {
+
+// Flat clusters that become one. What they may deviate from one plane is counted as distances on the unit sphere, which
+// add up to no less than what they are.
+class FlatUnion {
+public:
+    FlatUnion(const MeshTopology& topology, const std::vector<std::vector<std::uint32_t>>& clusters)
+        : root_(clusters.size()) {
+        std::iota(root_.begin(), root_.end(), 0u);
+        for (const auto& cluster : clusters) {
+            double area = 0.0, deviation = 0.0;
+            const Eigen::Vector3d normal = mean_normal(topology, cluster);
+            for (const std::uint32_t t : cluster) {
+                area += topology.area[t];
+                deviation = std::max(deviation, (to_double(topology.normal[t]) - normal).norm());
+            }
+            normal_.push_back(normal);
+            flat_.push_back(is_planar(topology, cluster, normal, kPlanarCos));
+            whole_.push_back({area * normal, deviation});
+        }
+    }
+
+    std::uint32_t find(std::uint32_t c) {
+        while (root_[c] != c) c = root_[c] = root_[root_[c]];
+        return c;
+    }
+
+    // Unites the clusters, and what they are of, where all of it is flat then.
+    void unite(std::uint32_t a, std::uint32_t b) {
+        if (!flat_[a] || !flat_[b] || normal_[a].dot(normal_[b]) < kSamePlaneCos) return;
+        const std::uint32_t x = std::min(find(a), find(b)), y = std::max(find(a), find(b));
+        if (x == y) return;
+        const Eigen::Vector3d sum = whole_[x].normal + whole_[y].normal, mean = sum.normalized();
+        const double deviation = std::max((whole_[x].normal.normalized() - mean).norm() + whole_[x].deviation,
+                                          (whole_[y].normal.normalized() - mean).norm() + whole_[y].deviation);
+        if (deviation * deviation > 2.0 - 2.0 * kPlanarCos) return;
+        root_[y] = x;
+        whole_[x] = {sum, deviation};
+    }
+
+private:
+    struct Whole {
+        Eigen::Vector3d normal;  // times the area
+        double deviation;        // at most, of a triangle's normal
+    };
+    std::vector<std::uint32_t> root_;
+    std::vector<Eigen::Vector3d> normal_;  // of the clusters
+    std::vector<bool> flat_;
+    std::vector<Whole> whole_;  // of what is united, by its root
+};
+
+}  // namespace
+
 std::vector<std::vector<std::uint32_t>> unite_across_t_junctions(const Mesh& mesh, const MeshTopology& topology,
                                                                  std::vector<std::vector<std::uint32_t>> clusters) {
-    std::vector<std::uint32_t> cluster_of(topology.triangle_count(), kNone), root(clusters.size());
-    std::iota(root.begin(), root.end(), 0u);
+    std::vector<std::uint32_t> cluster_of(topology.triangle_count(), kNone);
     for (std::uint32_t c = 0; c < clusters.size(); ++c)
         for (const std::uint32_t t : clusters[c]) cluster_of[t] = c;
-    const auto find = [&](std::uint32_t c) {
-        while (root[c] != c) c = root[c] = root[root[c]];
-        return c;
-    };
-    std::vector<Eigen::Vector3d> normal;
-    std::vector<bool> planar;
-    for (const auto& cluster : clusters) {
-        normal.push_back(mean_normal(topology, cluster));
-        planar.push_back(is_planar(topology, cluster, normal.back(), kPlanarCos));
-    }
-    for (const SmoothContact& c : t_junctions(mesh, topology)) {
-        const std::uint32_t a = cluster_of[c.a / 3], b = cluster_of[c.b / 3];
-        const std::uint32_t x = find(a), y = find(b);
-        if (!planar[a] || !planar[b] || normal[x].dot(normal[y]) < kSamePlaneCos) continue;
-        root[std::max(x, y)] = std::min(x, y);
-    }
+    FlatUnion flat(topology, clusters);
+    for (const SmoothContact& c : t_junctions(mesh, topology)) flat.unite(cluster_of[c.a / 3], cluster_of[c.b / 3]);
     std::vector<std::vector<std::uint32_t>> united;
     std::vector<std::uint32_t> number(clusters.size(), kNone);
     for (std::uint32_t c = 0; c < clusters.size(); ++c) {
-        std::uint32_t& n = number[find(c)];
+        std::uint32_t& n = number[flat.find(c)];
         if (n == kNone) {
             n = static_cast<std::uint32_t>(united.size());
             united.emplace_back();

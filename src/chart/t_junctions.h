@@ -14,7 +14,8 @@ namespace lumel {
 // near as rounding or a ten-thousandth of the shorter edge. By ascending `a`, then `b`, each once.
 std::vector<SmoothContact> t_junctions(const Mesh& mesh, const MeshTopology& topology);
 
-// Unites clusters that lie in one plane and touch at T-junctions. Clusters as `segment` makes them, and so ordered.
+// Unites clusters that lie in one plane (2 degrees over all that is united) and touch at T-junctions. Clusters as
+// `segment` makes them, and so ordered.
 std::vector<std::vector<std::uint32_t>> unite_across_t_junctions(const Mesh& mesh, const MeshTopology& topology,
                                                                  std::vector<std::vector<std::uint32_t>> clusters);
 

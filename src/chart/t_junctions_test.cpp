@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "chart/parameterize.h"
+#include "chart/patch.h"
 #include "chart/segment.h"
 #include "support/meshes.h"
 
@@ -71,6 +74,73 @@ TEST(TJunctions, WhatIsBentOrBesideIsNone) {
     add_quad(bent, {-1, 0, 0.01f}, {1, 0, 0}, {0, 1, 0});
     test::add_face_normals(bent);
     EXPECT_TRUE(t_junctions(bent, build_topology(bent)).empty());
+}
+
+// A wall of bricks in running bond, `gap` apart, turned about z; bricks of 1 x 0.5 m.
+Mesh brick_wall(int rows, int columns, double gap, double angle) {
+    Mesh mesh;
+    const double c = std::cos(angle), s = std::sin(angle);
+    const auto turned = [&](double x, double y) {
+        return Vec3{static_cast<float>(c * x - s * y), static_cast<float>(s * x + c * y), 0.0f};
+    };
+    for (int row = 0; row < rows; ++row)
+        for (int column = 0; column < columns; ++column) {
+            const Vec3 corner = turned(column * (1.0 + gap) + (row % 2) * 0.5, row * (0.5 + gap));
+            add_quad(mesh, corner, turned(1.0, 0.0), turned(0.0, 0.5));
+        }
+    test::add_face_normals(mesh);
+    return mesh;
+}
+
+// Gaps within a ten-thousandth of the shorter edge (5e-5 m) are none, whichever way the wall is turned.
+TEST(TJunctions, ABrickWallWithTinyGapsIsOneChart) {
+    for (const double angle : {0.0, 0.5}) {
+        const std::vector<FlatChart> charts = charts_of(brick_wall(16, 16, 2e-5, angle));
+        EXPECT_EQ(charts.size(), 1u) << angle;
+        EXPECT_EQ(charts_of(brick_wall(4, 4, 1e-3, angle)).size(), 16u) << "gaps that are some";
+    }
+}
+
+// A ring of 1000 panels, every other one half a metre higher, each turned by 0.36 degrees: any two are in one plane,
+// all of them are not. What is united stays flat, and is as much as two degrees to either side allow: some ten panels.
+TEST(TJunctions, ABendOfManySmallStepsIsNotOnePlane) {
+    constexpr int kPanels = 1000;
+    Mesh mesh;
+    const auto at = [](int k) {
+        const double angle = 2.0 * 3.14159265358979 * k / kPanels;
+        return Vec3{static_cast<float>(100.0 * std::cos(angle)), static_cast<float>(100.0 * std::sin(angle)), 0.0f};
+    };
+    for (int k = 0; k < kPanels; ++k)
+        add_quad(mesh, at(k) + Vec3{0, 0, 0.5f * static_cast<float>(k % 2)}, at(k + 1) - at(k), {0, 0, 3});
+    test::add_face_normals(mesh);
+    const MeshTopology topology = build_topology(mesh);
+    std::vector<std::vector<std::uint32_t>> clusters;
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); t += 2) clusters.push_back({t, t + 1});
+    const auto united = unite_across_t_junctions(mesh, topology, clusters);
+    EXPECT_LE(united.size(), kPanels / 5u);
+    for (const auto& cluster : united)
+        EXPECT_TRUE(is_planar(topology, cluster, mean_normal(topology, cluster), 0.9994)) << cluster.size();
+}
+
+// The box of a long edge is full of edges that it does not come near: here those of 10,000 panels. It finds its
+// neighbour all the same.
+TEST(TJunctions, ALongDiagonalFindsWhatItTouches) {
+    Mesh mesh;
+    for (int y = 0; y < 100; ++y)
+        for (int x = 0; x < 100; ++x)
+            add_quad(mesh, {0.1f * static_cast<float>(x), 0.1f * static_cast<float>(y), 5.0f}, {0.09f, 0, 0},
+                     {0, 0.09f, 0});
+    // Two triangles of a slanting plane that touch along the diagonal of a cube, the second on 8 of its 10 metres.
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    for (const Vec3 p :
+         {Vec3{0, 0, 0}, Vec3{10, 0, 0}, Vec3{10, 10, 10}, Vec3{9, 9, 9}, Vec3{0, 10, 10}, Vec3{1, 1, 1}})
+        mesh.positions.push_back(p);
+    mesh.triangles.push_back({first, first + 1, first + 2});
+    mesh.triangles.push_back({first + 3, first + 4, first + 5});
+    test::add_face_normals(mesh);
+    const std::vector<SmoothContact> contacts = t_junctions(mesh, build_topology(mesh));
+    ASSERT_EQ(contacts.size(), 1u);
+    EXPECT_NEAR(contacts[0].length, 8.0 * std::sqrt(3.0), 1e-5);
 }
 
 // Two panels on the same place beside a third: they touch it both, and only one of them fits.
