@@ -65,16 +65,18 @@ struct Gap {
     double distance = 0.0, length = 0.0;
 };
 
-Gap gap_of(const std::vector<CommonEdge>& edges, std::uint32_t run, const RigidMotion& motion) {
-    Gap gap;
+// Of all runs, by their number.
+std::vector<Gap> gaps_of(const std::vector<CommonEdge>& edges, const RigidMotion& motion) {
+    std::vector<Gap> gaps(edges.size());
     for (const CommonEdge& e : edges) {
-        if (e.run != run) continue;
+        Gap& gap = gaps[e.run];
         gap.length += e.length;
         for (std::size_t k = 0; k < 2; ++k)
             gap.distance += 0.5 * e.length * (motion(e.moved[k]) - e.kept[k]).squaredNorm();
     }
-    gap.distance = std::sqrt(gap.distance / gap.length);
-    return gap;
+    for (Gap& gap : gaps)
+        if (gap.length > 0.0) gap.distance = std::sqrt(gap.distance / gap.length);
+    return gaps;
 }
 
 }  // namespace
@@ -97,7 +99,7 @@ public:
             queue_.pop();
             if (all_.pieces_[best.a].version != best.version_a || all_.pieces_[best.b].version != best.version_b)
                 continue;
-            try_pair(best.a, best.b);
+            try_pair(best.a, best.b, cancelled);
         }
     }
 
@@ -105,6 +107,7 @@ private:
     static constexpr double kFreeWork = 2000.0;  // triangles: small components are tried to the end
 
     static constexpr double kExactCost = 0.25;  // of an attempt without relaxing
+    static constexpr double kLookCost = 0.01;   // of looking for the common edges of a chart
 
     struct Candidate {
         double smooth;
@@ -121,15 +124,31 @@ private:
             queue_.push({border.smooth, a, b, all_.pieces_[a].version, all_.pieces_[b].version});
     }
 
-    void try_pair(std::uint32_t a, std::uint32_t b) {
+    void try_pair(std::uint32_t a, std::uint32_t b, const std::function<bool()>& cancelled) {
         const auto key = [&](std::uint32_t p) { return std::pair(chart(p).triangles.size(), p); };
         if (key(a) < key(b)) std::swap(a, b);
+        budget_ -= kLookCost * static_cast<double>(chart(b).triangles.size());
         std::vector<CommonEdge> edges = common_edges(a, b);
         const std::uint32_t longest = number_runs(edges);
         const RigidMotion motion = fit(edges, longest);
-        const Gap gap = gap_of(edges, longest, motion);
-        if (gap.distance > all_.options_.max_gap * gap.length) return;
-        if (std::optional<FlatChart> joined = join(a, b, edges, motion, gap.length)) replace(a, b, std::move(*joined));
+        const std::vector<Gap> gaps = gaps_of(edges, motion);
+        const double most = all_.options_.max_gap * gaps[longest].length;
+        if (gaps[longest].distance > most) return;
+        // Other runs that come about as near are taken to meet as well. Those of a long thin tube do, too, but cannot:
+        // where the map of all is none, the longest alone may have one.
+        const auto cuts_beyond = [&](const auto& meets) {
+            std::vector<std::uint32_t> cuts;
+            for (const CommonEdge& e : edges)
+                if (!meets(e.run)) cuts.push_back(e.moved_edge), cuts.push_back(e.kept_edge);
+            return cuts;
+        };
+        const auto some = cuts_beyond([&](std::uint32_t run) { return gaps[run].distance <= most; });
+        std::optional<FlatChart> joined = join(a, b, some, motion, cancelled);
+        if (!joined && budget_ > 0.0) {
+            const auto all = cuts_beyond([&](std::uint32_t run) { return run == longest; });
+            if (all.size() > some.size()) joined = join(a, b, all, motion, cancelled);
+        }
+        if (joined) replace(a, b, std::move(*joined));
     }
 
     // Edges of b whose other side is in a.
@@ -183,16 +202,18 @@ private:
         return longest;
     }
 
-    // Both charts as one, or nothing where that is no valid map.
-    std::optional<FlatChart> join(std::uint32_t a, std::uint32_t b, const std::vector<CommonEdge>& edges,
-                                  const RigidMotion& motion, double length) {
+    // Both charts as one that stays cut along some common edges, or nothing where that is no valid map.
+    std::optional<FlatChart> join(std::uint32_t a, std::uint32_t b, const std::vector<std::uint32_t>& cuts,
+                                  const RigidMotion& motion, const std::function<bool()>& cancelled) {
+        if (cancelled()) return std::nullopt;
         FlatChart out;
         const FlatChart &kept = chart(a), &moved = chart(b);
         std::merge(kept.triangles.begin(), kept.triangles.end(), moved.triangles.begin(), moved.triangles.end(),
                    std::back_inserter(out.triangles));
         std::merge(kept.cuts.begin(), kept.cuts.end(), moved.cuts.begin(), moved.cuts.end(),
                    std::back_inserter(out.cuts));
-        add_cuts(edges, motion, length, out.cuts);
+        out.cuts.insert(out.cuts.end(), cuts.begin(), cuts.end());
+        std::sort(out.cuts.begin(), out.cuts.end());
         out.islands = kept.islands || moved.islands;
         const Patch patch = make_patch(all_.mesh_, all_.topology_, out.triangles, out.cuts);
         Uvs uv;
@@ -201,24 +222,13 @@ private:
         if (!exact) {
             if (out.islands) return std::nullopt;  // relaxing would not keep them where they are
             relax_as_rigid(patch, all_.options_.relax_steps, uv);
+            if (cancelled()) return std::nullopt;
         }
         Attempt result =
             attempt(all_.mesh_, all_.topology_, out.triangles, patch, std::move(uv), all_.options_.max_stretch);
         if (!result.good()) return std::nullopt;
         out.uv = std::move(result.uv);
         return out;
-    }
-
-    // Runs whose sides do not come together stay cut.
-    void add_cuts(const std::vector<CommonEdge>& edges, const RigidMotion& motion, double length,
-                  std::vector<std::uint32_t>& cuts) const {
-        std::map<std::uint32_t, bool> meets;
-        for (const CommonEdge& e : edges)
-            if (!meets.contains(e.run))
-                meets[e.run] = gap_of(edges, e.run, motion).distance <= all_.options_.max_gap * length;
-        for (const CommonEdge& e : edges)
-            if (!meets[e.run]) cuts.push_back(e.moved_edge), cuts.push_back(e.kept_edge);
-        std::sort(cuts.begin(), cuts.end());
     }
 
     // The kept chart where it is and the moved one beside it; common vertices in the middle. Returns whether any two
@@ -330,12 +340,6 @@ void ChartJoiner::find_components() {
     // Those between components are creases: never joined, and jobs must not touch each other's pieces.
     for (std::uint32_t p = 0; p < pieces_.size(); ++p)
         std::erase_if(pieces_[p].borders, [&](const auto& b) { return !same_component(b.first, p); });
-}
-
-std::size_t ChartJoiner::component_triangles(std::size_t component) const {
-    std::size_t n = 0;
-    for (const std::uint32_t p : components_[component]) n += pieces_[p].chart.triangles.size();
-    return n;
 }
 
 void ChartJoiner::run(std::size_t component, const std::function<bool()>& cancelled) {

@@ -24,7 +24,9 @@ struct JoinOptions {
     double max_stretch = 1.05;  // Sander's L2 of a joined chart
     double max_gap = 0.25;      // root mean square distance of the borders after the rigid motion, over their length
     int relax_steps = 8;
-    double work = 6.0;  // triangles of all attempts together, times those of the component: what bounds the time
+    // Triangles of all attempts together, times those of the component: what bounds the time. One that is refused by
+    // its gap counts as a hundredth of the smaller chart.
+    double work = 6.0;
 };
 
 // The charts of one mesh. Pairs are tried by the length of smooth surface between them, longest first.
@@ -35,7 +37,6 @@ public:
 
     // Charts of different components have no smooth surface between them. Components may run at the same time.
     [[nodiscard]] std::size_t component_count() const { return components_.size(); }
-    [[nodiscard]] std::size_t component_triangles(std::size_t component) const;
     void run(std::size_t component, const std::function<bool()>& cancelled);
 
     // What is left, in no particular order.
