@@ -55,7 +55,7 @@ Result<PartialFolder> PartialFolder::create(const fs::path& folder, const std::s
         const fs::path path = folder / (stem + std::string(kPartial) + number);
         if (fs::exists(fs::symlink_status(path, error)) || is_taken(number)) continue;
         const bool made = fs::create_directory(path, error);
-        if (error) return system_error("creating the folder", path, error.value());
+        if (error) return system_error("creating the folder", folder / stem, error.value());
         // Another process may have taken the same name, or taken the folder for a stale one before it was locked.
         FolderLock lock;
         const FolderLock::State state = lock.acquire(path);

@@ -22,7 +22,12 @@ layout() { grep '"charts": {"id"' "$1"; }
 [ -n "$(layout out/manifest.json)" ] || complain 'the manifest has no charts'
 [ "$(layout out/manifest.json)" = "$(layout flat/atlas.json)" ] || complain 'bake and atlas lay out differently'
 
-# Into the folder of a bake: the bake stays, an older atlas goes.
+# Into the folder of a bake: the bake stays, an older atlas goes. Pictures of the same name that are of no atlas stay, too.
+touch out/atlas_charts_5.png
+expect 1 'out' atlas ok.gltf -o out/ --texels-per-metre 16
+[ -e out/atlas_charts_5.png ] || complain 'atlas took a picture away that is not its own'
+rm out/atlas_charts_5.png
+expect 0 '' atlas ok.gltf -o out/ --texels-per-metre 16
 touch out/atlas_charts_5.png
 expect 0 '' atlas ok.gltf -o out/ --texels-per-metre 16
 [ -s out/manifest.json ] && [ -s out/scene.glb ] || complain 'atlas took the bake away'
