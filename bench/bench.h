@@ -13,6 +13,7 @@ void add_transport(CLI::App& app);  // error against cost, method by method
 void add_charts(CLI::App& app);     // charts of scenes: seams, stretch, time
 void add_pack(CLI::App& app);       // chart masks: texels used, time
 void add_encodings(CLI::App& app);  // error of encodings over normals
+void add_leaks(CLI::App& app);      // light on the wrong side of walls
 void add_bc(CLI::App& app);         // block compression
 
 // CPU time of the process, all threads together: the machine's other work does not count.

@@ -14,6 +14,7 @@ int main(int argc, char** argv) {
     lumel::bench::add_charts(app);
     lumel::bench::add_pack(app);
     lumel::bench::add_encodings(app);
+    lumel::bench::add_leaks(app);
     lumel::bench::add_bc(app);
     try {
         app.parse(argc, argv);

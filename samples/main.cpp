@@ -1,4 +1,4 @@
-// lumel_samples FOLDER [gallery | town BUILDINGS | charts COUNT [SEED]]: writes sample scenes and chart masks.
+// lumel_samples FOLDER [gallery | leaks | town BUILDINGS | charts COUNT [SEED]]: writes sample scenes and chart masks.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -10,8 +10,8 @@ int main(int argc, char** argv) {
     using namespace lumel;
     const std::string which = argc > 2 ? argv[2] : "gallery";
     const bool counted = which == "town" || which == "charts";
-    if (argc < 2 || (which != "gallery" && !counted) || (counted && argc < 4)) {
-        std::fprintf(stderr, "usage: lumel_samples FOLDER [gallery | town BUILDINGS | charts COUNT [SEED]]\n");
+    if (argc < 2 || (which != "gallery" && which != "leaks" && !counted) || (counted && argc < 4)) {
+        std::fprintf(stderr, "usage: lumel_samples FOLDER [gallery | leaks | town BUILDINGS | charts COUNT [SEED]]\n");
         return 2;
     }
     const auto number = [&](int i) {
@@ -21,6 +21,7 @@ int main(int argc, char** argv) {
     std::filesystem::create_directories(argv[1], ignored);
     const Status status = which == "town"     ? samples::write_town(argv[1], number(3))
                           : which == "charts" ? samples::write_charts(argv[1], std::max(1u, number(3)), number(4))
+                          : which == "leaks"  ? samples::write_leaks(argv[1])
                                               : samples::write_gallery(argv[1]);
     if (status.ok()) return 0;
     std::fprintf(stderr, "lumel_samples: %s\n", status.error().text().c_str());

@@ -13,6 +13,9 @@ Status write_gallery(const std::filesystem::path& folder);
 // A level of `buildings` instanced houses on streets: for tests of size. About 41 charts a house.
 Status write_town(const std::filesystem::path& folder, std::uint32_t buildings);
 
+// The scenes of the leak suite: see leaks.h.
+Status write_leaks(const std::filesystem::path& folder);
+
 // Chart masks for `lumel pack`, level.msk: see level_masks.h.
 Status write_charts(const std::filesystem::path& folder, std::uint32_t charts, std::uint64_t seed);
 

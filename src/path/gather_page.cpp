@@ -8,6 +8,7 @@
 #include "base/check.h"
 #include "base/parallel.h"
 #include "base/try.h"
+#include "path/visible_starts.h"
 
 namespace lumel {
 
@@ -24,17 +25,30 @@ public:
         sites_.clear();
         for (std::size_t k = 0; k < block.size(); ++k) {
             const std::uint32_t i = block[k];
-            const std::uint32_t n =
-                sample_points(texels, i, transport.scene, transport.geometry, charts, atlas, points_[k]);
-            const std::uint64_t id =
-                (std::uint64_t{texels.page} << 32) | (std::uint64_t{texels.y[i]} << 16) | texels.x[i];
-            sites_.push_back({std::span(points_[k]).first(n), id, texels.world_size[i]});
+            const auto points = [&](Points& out, Footprint footprint) {
+                return std::span<const SamplePoint>(out).first(sample_points(
+                    texels, i, transport.scene, transport.geometry, charts, atlas, out, footprint));
+            };
+            GatherSite site;
+            site.points = points(points_[k], Footprint::gather);
+            if (~texels.valid[i] == 0) site.whole = points(whole_[k], Footprint::whole);
+            site.id = (std::uint64_t{texels.page} << 32) | (std::uint64_t{texels.y[i]} << 16) | texels.x[i];
+            site.texel_size = texels.world_size[i];
+            site.valid = texels.valid[i];
+            const std::uint32_t first = texels.first_triangle[i], end = texels.first_triangle[i + 1];
+            site.triangles = std::span(&texels.triangles[first], end - first);
+            const std::uint32_t middle = site.points[nearest_to_centre(site.valid)].triangle;
+            site.axes =
+                texel_axes(transport.geometry.corners(middle),
+                           atlas.triangle_uv(charts, transport.geometry, transport.scene, middle).texels);
+            sites_.push_back(site);
         }
     }
     [[nodiscard]] std::span<const GatherSite> sites() const { return sites_; }
 
 private:
-    std::array<std::array<SamplePoint, kSamplesPerTexel>, kMostTexelsTogether> points_;
+    using Points = std::array<SamplePoint, kSamplesPerTexel>;
+    std::array<Points, kMostTexelsTogether> points_, whole_;
     std::vector<GatherSite> sites_;
 };
 

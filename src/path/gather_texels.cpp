@@ -12,6 +12,7 @@
 #include "path/path_integrator.h"
 #include "path/path_workspace.h"
 #include "path/trace_paths.h"
+#include "path/visible_starts.h"
 
 namespace lumel {
 namespace {
@@ -58,14 +59,33 @@ void PathIntegrator::begin_texel(const GatherSite& site, Workspace& w, TexelStat
     if (texel.both_sides) {
         std::fill(w.sides.begin(), w.sides.end(), std::uint8_t{1});
         surface_starts(site.points, std::span(w.sides).first(n), w, texel.back_surfaces);
-    } else if (any_double_sided_) {
-        const auto starts = std::span(texel.surfaces).first(n);
-        n = keep_open_points(starts, enclosed_points(starts, kEnclosureReach * site.texel_size, mix32(key),
-                                                     transport_.tracer, transport_.geometry, w.rays, w.hits));
+    } else {
+        n = choose_starts(site, key, w, texel.surfaces);
     }
     texel.points = n;
     find_sunlit(std::span(texel.surfaces).first(n), false, w);
     if (texel.both_sides) find_sunlit(std::span(texel.back_surfaces).first(n), false, w);
+}
+
+// Where some of the points are not seen, the rest are few or to one side: those of all of its square say more.
+std::size_t PathIntegrator::choose_starts(const GatherSite& site, std::uint32_t key, Workspace& w,
+                                          std::span<SurfaceStart> starts) const {
+    const VisibleStarts visible(transport_.tracer, transport_.geometry, w.rays, w.hits);
+    const auto choose = [&](std::size_t n) {
+        const auto all = starts.first(n);
+        const std::uint64_t enclosed =
+            any_double_sided_ ? enclosed_points(all, kEnclosureReach * site.texel_size, mix32(key), transport_.tracer,
+                                                transport_.geometry, w.rays, w.hits)
+                              : 0;
+        return visible.keep_visible(site, all, enclosed, mix32(key + 1));
+    };
+    VisibleStarts::Choice choice = choose(site.points.size());
+    if (choice.fate != StartFate::all && !site.whole.empty()) {
+        surface_starts(site.whole, std::span(w.sides).first(site.whole.size()), w, starts);
+        choice = choose(site.whole.size());
+    }
+    if (choice.fate == StartFate::hidden) choice = visible.push_out(site, starts.first(choice.count), mix32(key + 2));
+    return choice.count;
 }
 
 bool PathIntegrator::gather_samples(std::uint32_t first, std::uint32_t last, bool learning, Workspace& w,

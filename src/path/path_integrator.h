@@ -20,6 +20,7 @@
 #include "path/light_rate.h"
 #include "path/radiance_sums.h"
 #include "scene/surface.h"
+#include "texel/texel_axes.h"
 #include "texel/texel_buffer.h"
 #include "trace/tracer.h"
 
@@ -83,6 +84,13 @@ struct GatherSite {
     std::span<const SamplePoint> points;
     std::uint64_t id;  // names the texel for good (page and position), whatever range, thread or shard it is baked in
     float texel_size;  // metres
+    // What tells which of the points lookups show (path/visible_starts.h). Points of all of its square, where `points`
+    // are those of its middle (else empty); which of the Hammersley points these are; its triangles, and its axes at
+    // the point nearest to its centre.
+    std::span<const SamplePoint> whole = {};
+    std::uint64_t valid = 0;
+    std::span<const std::uint32_t> triangles = {};
+    TexelAxes axes = {};
 };
 
 class PathIntegrator {
@@ -120,6 +128,9 @@ public:
 private:
     struct TexelState;
     void begin_texel(const GatherSite& site, Workspace& workspace, TexelState& texel) const;
+    // Starts of the points that lookups show, at the front of `starts`, and their number.
+    std::size_t choose_starts(const GatherSite& site, std::uint32_t key, Workspace& workspace,
+                              std::span<SurfaceStart> starts) const;
     // Samples first to last - 1 of a texel of the workspace. `learning`: for the guide, too. These return false where
     // cancelled.
     bool gather_samples(std::uint32_t first, std::uint32_t last, bool learning, Workspace& workspace, std::size_t texel,
