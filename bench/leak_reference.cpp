@@ -14,9 +14,10 @@
 namespace lumel::bench {
 namespace {
 
-constexpr float kLift = 0.04f;         // texels that short visibility rays run above the surface
-constexpr float kAboveSurface = 2e-3f;  // metres, of the points that are asked whether they are hidden
-constexpr std::uint32_t kHalves = 2;   // of the paths, independent: they tell the error
+constexpr float kLift = 0.04f;              // texels that short visibility rays run above the surface
+constexpr float kAboveSurface = 2e-3f;      // metres, of the points that are asked whether they are hidden
+constexpr std::size_t kSliver = kFineEdge;  // fine points: a texel of which no more are seen is judged by its lookups
+constexpr std::uint32_t kHalves = 2;        // of the paths, independent: they tell the error
 
 struct FinePoint {
     std::uint32_t x, y;  // on the fine grid of the page
@@ -24,9 +25,11 @@ struct FinePoint {
     Vec3 lifted;
     SurfaceStart start;
     std::array<double, kHalves> sum{}, count{};
+    double traced = 0.0;
     bool joined_right = false, joined_down = false;  // whether it sees that neighbour of its chart
 
     // Void paths leave the count (docs/conventions.md, "The hemisphere of a texel").
+    [[nodiscard]] bool is_void() const { return 2.0 * (count[0] + count[1]) < traced; }
     [[nodiscard]] double mean() const { return (sum[0] + sum[1]) / std::max(1.0, count[0] + count[1]); }
 };
 
@@ -45,6 +48,7 @@ public:
         join_neighbours();
     }
 
+    // Points more than half of whose paths are void are not visible: they are left out.
     void light(std::uint32_t paths) {
         PathOptions options;
         options.samples = paths;
@@ -54,13 +58,20 @@ public:
         parallel_for(context_, bench_.texels.size(), 1, [&](const ChunkRange& range) {
             light_texel(range.begin, paths, integrator, *workspaces[range.worker]);
         });
+        for (const FinePoint& p : points_)
+            if (p.is_void()) at_[std::size_t{p.y} * width_ + p.x] = kNone;
     }
 
     [[nodiscard]] LeakReference evaluate() const {
         LeakReference out;
         double sum = 0.0, squares = 0.0;
-        for (const FinePoint& p : points_) sum += p.mean();
-        out.scene_mean = sum / static_cast<double>(std::max<std::size_t>(1, points_.size()));
+        std::size_t visible = 0;
+        for (const FinePoint& p : points_) {
+            if (p.is_void()) continue;
+            sum += p.mean();
+            ++visible;
+        }
+        out.scene_mean = sum / static_cast<double>(std::max<std::size_t>(1, visible));
         std::size_t texels = 0;
         for (std::size_t i = 0; i + 1 < first_.size(); ++i) {
             if (first_[i] == first_[i + 1]) continue;
@@ -166,6 +177,7 @@ private:
                     FinePoint& p = points_[first + (base + lane) % n];
                     p.sum[half] += static_cast<double>(luminance(light[lane]));
                     p.count[half] += valid[lane];
+                    p.traced += 1.0;
                 }
             }
         }
@@ -219,13 +231,15 @@ private:
         std::size_t largest = 0;
         for (const Group& g : own) largest = std::max(largest, g.size);
         for (const Group& g : own)
-            if (g.size + kFineEdge >= largest) out.means.push_back(static_cast<float>(g.light / g.weight));
+            if (largest > kSliver && g.size + kFineEdge >= largest)
+                out.means.push_back(static_cast<float>(g.light / g.weight));
         out.own = !out.means.empty();
         if (out.own) return out;
         const auto half = static_cast<std::int32_t>(kFineEdge / 2), edge = static_cast<std::int32_t>(2 * kFineEdge);
         const double middle_x = left + half, middle_y = top + half;
         const auto bilinear = [&](const FinePoint& p) {
-            const double dx = std::fabs(p.x + 0.5 - middle_x) / kFineEdge, dy = std::fabs(p.y + 0.5 - middle_y) / kFineEdge;
+            const double dx = std::fabs(p.x + 0.5 - middle_x) / kFineEdge,
+                         dy = std::fabs(p.y + 0.5 - middle_y) / kFineEdge;
             return std::max(0.0, 1.0 - dx) * std::max(0.0, 1.0 - dy);
         };
         for (const Group& g : groups(left - half, top - half, edge, kNone, bilinear))

@@ -1,6 +1,6 @@
 // The truth of the leak suite: what each texel of a page should hold so that no lookup shows the light of the other
-// side of a wall. By brute force on 8 x 8 fine points a texel, of which those inside solids are known from how the scene
-// was made; nothing here asks the code that picks the sample points of a bake.
+// side of a wall. By brute force on 8 x 8 fine points a texel, of which those inside solids are known from how the
+// scene was made; nothing here asks the code that picks the sample points of a bake.
 #pragma once
 
 #include <cstdint>
@@ -15,11 +15,12 @@ namespace lumel::bench {
 inline constexpr std::uint32_t kFineEdge = 8;  // fine points along a texel
 
 // What a pixel of the page may hold: the mean I (luminance) of the visible fine points of each group of them that see
-// each other. Of a texel with such points of its own: the largest group, and those as large but for a row. Else (a texel
-// inside a wall, a dilated one): of each group that lookups blend the pixel into, weighted as they do.
+// each other. Of a texel with such points of its own: the largest group, and those as large but for a row. Else (a
+// texel inside a wall, a dilated one, one of which less than a row is seen): of each group that lookups blend the pixel
+// into, weighted as they do.
 struct AllowedLight {
     std::vector<float> means;  // empty: no lookup at a visible point reads the pixel
-    bool own = false;          // whether it has visible points of its own
+    bool own = false;          // whether more than a row of its own points are visible
 };
 
 struct LeakReference {

@@ -28,6 +28,7 @@ struct Options {
     std::string pictures;
     std::uint32_t samples = 1024, paths = 4096;
     unsigned threads = 0;
+    bool list = false, brute_force = false;
 };
 
 constexpr double kBar = 0.05, kDream = 0.02;  // of the scene's mean
@@ -51,6 +52,7 @@ BakeOptions bake_options(const Options& options) {
     out.texels_per_metre = samples::kLeakTexelsPerMetre;
     out.samples = options.samples;
     out.threads = options.threads;
+    if (options.brute_force) out.integrator = Integrator::paths;
     return out;
 }
 
@@ -115,13 +117,32 @@ void draw(const BenchScene& bench, const LeakReference& reference, const PageLig
                 color = {grey, grey, grey};
                 if (errors) color = color * 0.4f;
             }
-            if (errors && verdict.error[at] > kBar) color = {1, 0.05f, 0.05f};
-            else if (errors && verdict.error[at] > kDream) color = {0.9f, 0.7f, 0.0f};
-            else if (errors && verdict.error[at] < 0.0f) color = {0.0f, 0.0f, 0.15f};
+            if (errors && verdict.error[at] > kBar)
+                color = {1, 0.05f, 0.05f};
+            else if (errors && verdict.error[at] > kDream)
+                color = {0.9f, 0.7f, 0.0f};
+            else if (errors && verdict.error[at] < 0.0f)
+                color = {0.0f, 0.0f, 0.15f};
             std::uint8_t* out = &bytes[(std::size_t{y} * width * kZoom + x) * 3];
             for (std::size_t c = 0; c < 3; ++c) out[c] = srgb8(std::min(1.0f, color[c]));
         }
     need(write_png(file, width * kZoom, 2 * height * kZoom, 3, bytes));
+}
+
+// Where the texels above the bar are, what they hold and what they may.
+void list_leaks(const BenchScene& bench, const LeakReference& reference, const PageLight& light,
+                const Verdict& verdict) {
+    for (std::size_t at = 0; at < light.size(); ++at) {
+        if (static_cast<double>(verdict.error[at]) <= kBar) continue;
+        const std::uint32_t texel = bench.texels.texel_at[at];
+        std::printf("#   %zu,%zu holds %.4f, may hold", at % bench.texels.width, at / bench.texels.width,
+                    light[at] ? static_cast<double>(*light[at]) : 0.0);
+        for (const float mean : reference.pixels[at].means) std::printf(" %.4f", static_cast<double>(mean));
+        const Vec3 p = texel == kNone ? Vec3{} : bench.texels.position[texel];
+        std::printf(" (%s%s) at %.3f,%.3f,%.3f\n", reference.pixels[at].own ? "own" : "read by others",
+                    texel == kNone ? ", dilated" : "", static_cast<double>(p.x), static_cast<double>(p.y),
+                    static_cast<double>(p.z));
+    }
 }
 
 void run_leaks(const Options& options) {
@@ -151,6 +172,7 @@ void run_leaks(const Options& options) {
             std::printf("%s,%s,%u,%zu,%zu,%zu,%.2f,%.4f,%.3f\n", made.name.c_str(), total.method, options.samples,
                         verdict.read, verdict.over_bar, verdict.over_dream, 100.0 * verdict.worst, reference.scene_mean,
                         100.0 * reference.sigma);
+            if (options.list) list_leaks(bench, reference, light, verdict);
             std::fflush(stdout);
             if (!options.pictures.empty())
                 draw(bench, reference, light, verdict,
@@ -169,9 +191,12 @@ void add_leaks(CLI::App& app) {
     CLI::App* command = app.add_subcommand("leaks", "Coarse bakes of the leak suite against what each texel shows");
     command->add_option("scenes", o->scenes, "Names of scenes of the suite; none: all twelve");
     command->add_option("--samples", o->samples, "Per texel")->check(CLI::Range(1u, 1u << 20));
-    command->add_option("--reference-paths", o->paths, "Per texel, of the reference")->check(CLI::Range(512u, 1u << 24));
+    command->add_option("--reference-paths", o->paths, "Per texel, of the reference")
+        ->check(CLI::Range(512u, 1u << 24));
     command->add_option("--pictures", o->pictures, "Folder for PNG pictures: the page, and below it its leaks in red")
         ->check(CLI::ExistingDirectory);
+    command->add_flag("--brute-force", o->brute_force, "Bake without surface cells");
+    command->add_flag("--list", o->list, "Also list the texels above 5 percent");
     command->add_option("--threads", o->threads, "0: one per hardware thread");
     command->callback([o] { run_leaks(*o); });
 }

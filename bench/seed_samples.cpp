@@ -12,14 +12,9 @@
 namespace lumel::bench {
 namespace {
 
-constexpr float kRoundedEpsilon = 2e-7f;  // the article's bias: position += sign(direction) * |position * 2e-7|
-
-Vec3 biased(Vec3 p, Vec3 direction) {
-    const auto step = [](float x, float d) {
-        return x + (d > 0.0f ? 1.0f : d < 0.0f ? -1.0f : 0.0f) * std::fabs(x * kRoundedEpsilon);
-    };
-    return {step(p.x, direction.x), step(p.y, direction.y), step(p.z, direction.z)};
-}
+// Metres. The article's own bias, position * 2e-7, is none at all at a coordinate of zero, where floors often are: what
+// is measured here is how leaks are kept out, not that.
+constexpr float kBias = 1e-4f;
 
 }  // namespace
 
@@ -29,7 +24,7 @@ SurfaceStart seed_sample(const BenchScene& bench, std::size_t texel) {
     const Vec3 normal = bench.geometry.geometric_normal(triangle);
     const Vec3 helper = std::fabs(normal.y) < 0.9f ? Vec3{0, 1, 0} : Vec3{1, 0, 0};
     const Vec3 tangent = normalize(cross(normal, helper)), bitangent = cross(normal, tangent);
-    const Vec3 position = biased(texels.position[texel], normal);
+    const Vec3 position = texels.position[texel] + normal * kBias;
     SurfaceStart start{position, texels.normal[texel], triangle};
     std::array<Ray, 4> rays;
     std::array<Hit, 4> hits;
@@ -44,7 +39,7 @@ SurfaceStart seed_sample(const BenchScene& bench, std::size_t texel) {
     for (std::size_t i = 0; i < rays.size(); ++i) {
         if (hits[i].missed() || !hits[i].back_face) continue;
         const Vec3 hit_normal = bench.geometry.geometric_normal(hits[i].triangle);
-        start.origin = biased(position + rays[i].direction * hits[i].t, hit_normal);
+        start.origin = position + rays[i].direction * hits[i].t + hit_normal * kBias;
         break;
     }
     return start;

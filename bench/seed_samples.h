@@ -10,8 +10,8 @@
 namespace lumel::bench {
 
 // Where a texel's one sample lies, lifted off its surface: the representative point, and from it the first of four
-// tangential rays of half a texel's diagonal that meets a back face decides: position + direction * distance + normal of
-// that face * bias. Tangents are made from the face normal alone, not from the UVs.
+// tangential rays of half a texel's diagonal that meets a back face decides: position + direction * distance + normal
+// of that face * bias. Tangents are made from the face normal alone, not from the UVs.
 SurfaceStart seed_sample(const BenchScene& bench, std::size_t texel);
 
 // The texels of the page gathered from those points by brute force: the irradiance of RadianceSums and the counts, all

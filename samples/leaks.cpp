@@ -12,8 +12,6 @@ namespace lumel::samples {
 namespace {
 
 constexpr Vec3 kDaylight{1, 1, 1};
-constexpr Vec3 kFloorCorner{-2.5f, 0.0f, -2.5f};
-constexpr float kFloorEdge = 5.0f;
 
 // An orthonormal frame at a point.
 struct Pose {
@@ -91,26 +89,26 @@ public:
         place(name, std::move(g), pose);
     }
 
+    // A slab that swallows what reaches into it; nobody looks at it from below.
     void floor(const Pose& pose = {}) {
-        sheet("floor", kFloorCorner + Vec3{0, 0, kFloorEdge}, {kFloorEdge, 0, 0}, {0, 0, -kFloorEdge}, false, pose);
+        constexpr float kEdge = 5.0f, kDepth = 0.9f;
+        solid_box("floor", {-0.5f * kEdge, -kDepth, -0.5f * kEdge}, {0.5f * kEdge, 0.0f, 0.5f * kEdge}, pose);
         hide([](Vec3 p) { return p.y < 0.0f; });
     }
 
-    // A flat lamp let into a ceiling, of which 2 cm show.
+    // A flat lamp let into a ceiling, of which 2 cm stand out; its sides are dark.
     void panel(Vec3 below, float edge, float radiance) {
-        Json material = make_material("panel", {0, 0, 0});
+        const Vec3 low = below - Vec3{0.5f * edge, 0.02f, 0.5f * edge};
+        const Vec3 high = below + Vec3{0.5f * edge, 0.05f, 0.5f * edge};
+        solid_box("lamp", low, high);
+        Json material = make_material("light", {0, 0, 0});
         material["emissiveFactor"] = {1.0, 1.0, 1.0};
         material["extensions"]["KHR_materials_emissive_strength"] = {{"emissiveStrength", radiance}};
         Geometry g;
         g.material = scene_.glb.add_material(material);
-        const Vec3 low = below - Vec3{0.5f * edge, 0.02f, 0.5f * edge};
-        const Vec3 high = below + Vec3{0.5f * edge, 0.05f, 0.5f * edge};
-        g.box(low, high);
-        hide([=](Vec3 p) {
-            return p.x > low.x && p.y > low.y && p.z > low.z && p.x < high.x && p.y < high.y && p.z < high.z;
-        });
-        const int mesh = scene_.glb.add_mesh("panel", std::span(&g, 1));
-        scene_.glb.add_node({{"name", "panel"}, {"mesh", mesh}, {"extras", {{"lightmap", false}}}});
+        g.quad(low - Vec3{0, 0.001f, 0}, {edge, 0, 0}, {0, 0, edge});
+        const int mesh = scene_.glb.add_mesh("light", std::span(&g, 1));
+        scene_.glb.add_node({{"name", "light"}, {"mesh", mesh}, {"extras", {{"lightmap", false}}}});
     }
 
     void hide(std::function<bool(Vec3)> where) { hidden_.push_back(std::move(where)); }
@@ -151,11 +149,11 @@ void thick_shell(LeakBuilder& b, Vec3 low, Vec3 high, float wall, bool double_si
     const float bottom = low.y - 0.3f;
     b.solid_box("wall -x", {low.x, bottom, low.z}, {low.x + wall, high.y, high.z}, {}, double_sided);
     b.solid_box("wall +x", {high.x - wall, bottom, low.z}, {high.x, high.y, high.z}, {}, double_sided);
-    b.solid_box("wall -z", {low.x + 0.01f, bottom, low.z + 0.01f}, {high.x - 0.01f, high.y, low.z + wall}, {},
+    b.solid_box("wall -z", {low.x + 0.11f, bottom, low.z + 0.23f}, {high.x - 0.11f, high.y, low.z + 0.23f + wall}, {},
                 double_sided);
-    b.solid_box("wall +z", {low.x + 0.01f, bottom, high.z - wall}, {high.x - 0.01f, high.y, high.z - 0.01f}, {},
+    b.solid_box("wall +z", {low.x + 0.11f, bottom, high.z - 0.23f - wall}, {high.x - 0.11f, high.y, high.z - 0.23f}, {},
                 double_sided);
-    b.solid_box("roof", {low.x - 0.01f, high.y - 0.1f, low.z - 0.01f}, {high.x + 0.01f, high.y + 0.1f, high.z + 0.01f},
+    b.solid_box("roof", {low.x - 0.31f, high.y - 0.1f, low.z - 0.31f}, {high.x + 0.31f, high.y + 0.1f, high.z + 0.31f},
                 {}, double_sided);
 }
 
@@ -173,7 +171,7 @@ LeakScene thin_single_sided_wall() {
     inner_sheets(b, low, high, false);
     b.panel({0.05f, 2.2f, 0.03f}, 1.6f, 0.6f);
     // Nobody sees such walls from outside.
-    b.hide([=](Vec3 p) { return p.x < low.x || p.x > high.x || p.z < low.z || p.z > high.z; });
+    b.hide([=](Vec3 p) { return p.x < low.x || p.x > high.x || p.z < low.z || p.z > high.z || p.y > high.y; });
     return b.finish();
 }
 
@@ -196,7 +194,7 @@ LeakScene inner_corner() {
 LeakScene outer_corner() {
     LeakBuilder b("outer_corner", kDaylight);
     b.floor();
-    b.solid_box("block", {-1.43f, -0.3f, -1.69f}, {0.56f, 1.6f, 0.44f}, turned_about_y({}, 17.0f), true);
+    b.solid_box("block", {-0.93f, -0.3f, -1.09f}, {0.56f, 1.1f, 0.44f}, turned_about_y({}, 17.0f), true);
     return b.finish();
 }
 
@@ -255,13 +253,13 @@ LeakScene half_in_floor() {
 LeakScene wall_in_texel_row() {
     LeakBuilder b("wall_in_texel_row", kDaylight);
     b.floor();
-    // Texel centres lie on whole quarters of a metre from the floor's corner: the wall at x = -0.5 is 0.1 m thick in the
-    // middle of its row, the other walls of the closed room are anywhere.
-    b.solid_box("wall in the row", {-0.55f, -0.3f, -1.5f}, {-0.45f, 2.0f, 1.6f});
-    b.solid_box("wall +x", {1.81f, -0.3f, -1.5f}, {2.03f, 2.0f, 1.6f});
-    b.solid_box("wall -z", {-0.54f, -0.3f, -1.52f}, {2.02f, 2.0f, -1.31f});
-    b.solid_box("wall +z", {-0.54f, -0.3f, 1.37f}, {2.02f, 2.0f, 1.62f});
-    b.solid_box("roof", {-0.56f, 1.9f, -1.53f}, {2.04f, 2.1f, 1.63f});
+    // Texel centres lie on whole quarters of a metre from the floor's corner: the wall at x = -0.5 is 0.1 m thick in
+    // the middle of its row, the other walls of the closed room are anywhere.
+    b.solid_box("wall in the row", {-0.55f, -0.3f, -1.71f}, {-0.45f, 2.0f, 1.83f});
+    b.solid_box("wall +x", {1.81f, -0.3f, -1.71f}, {2.03f, 2.0f, 1.83f});
+    b.solid_box("wall -z", {-0.5f, -0.3f, -1.52f}, {1.96f, 2.0f, -1.31f});
+    b.solid_box("wall +z", {-0.5f, -0.3f, 1.37f}, {1.96f, 2.0f, 1.62f});
+    b.solid_box("roof", {-0.86f, 1.9f, -1.83f}, {2.34f, 2.1f, 1.93f});
     b.panel({0.7f, 1.9f, 0.02f}, 1.4f, 0.6f);
     return b.finish();
 }
@@ -270,17 +268,18 @@ LeakScene roof_with_eaves() {
     LeakBuilder b("roof_with_eaves", kDaylight);
     b.floor();
     const float wall = 0.2f, half = 1.27f, top = 1.9f;
-    b.solid_box("wall -x", {-half, -0.3f, -1.4f}, {-half + wall, top, 1.4f});
-    b.solid_box("wall +x", {half - wall, -0.3f, -1.4f}, {half, top, 1.4f});
-    b.solid_box("gable -z", {-half + 0.01f, -0.3f, -1.39f}, {half - 0.01f, top + 0.9f, -1.39f + wall});
-    b.solid_box("gable +z", {-half + 0.01f, -0.3f, 1.39f - wall}, {half - 0.01f, top + 0.9f, 1.39f});
+    b.solid_box("wall -x", {-half, -0.3f, -1.3f}, {-half + wall, top, 1.3f});
+    b.solid_box("wall +x", {half - wall, -0.3f, -1.3f}, {half, top, 1.3f});
+    b.solid_box("gable -z", {-half - 0.23f, -0.3f, -1.39f}, {half + 0.23f, top + 0.9f, -1.39f + wall});
+    b.solid_box("gable +z", {-half - 0.23f, -0.3f, 1.39f - wall}, {half + 0.23f, top + 0.9f, 1.39f});
     // Slabs from the ridge down to half a metre beyond the walls; they pass through the tops of all walls.
     for (const float side : {-1.0f, 1.0f}) {
         const Pose slope = turned_about_z({0, 2.62f, 0}, -side * 33.0f);
-        b.solid_box(side < 0 ? "roof -x" : "roof +x", {side < 0 ? -2.1f : -0.1f, -0.08f, -1.87f},
-                    {side < 0 ? 0.1f : 2.1f, 0.05f, 1.87f}, slope);
+        b.solid_box(side < 0 ? "roof -x" : "roof +x", {side < 0 ? -2.1f : 0.02f, -0.08f, -1.87f},
+                    {side < 0 ? -0.02f : 2.1f, 0.05f, 1.87f}, slope);
     }
-    b.solid_box("ceiling", {-half + 0.01f, 1.55f, -1.38f}, {half - 0.01f, 1.7f, 1.38f});
+    b.solid_box("ceiling", {-half + 0.05f, 1.55f, -1.38f}, {half - 0.05f, 1.7f, 1.38f});
+    b.solid_box("ridge", {-0.22f, 2.1f, -2.1f}, {0.25f, 3.1f, 2.1f});
     b.panel({0.05f, 1.55f, 0.02f}, 1.4f, 0.6f);
     return b.finish();
 }

@@ -45,13 +45,16 @@ std::uint64_t enclosed_points(std::span<const SurfaceStart> starts, float reach,
     return enclosed;
 }
 
-std::size_t keep_open_points(std::span<SurfaceStart> starts, std::uint64_t enclosed) {
-    const auto shut = static_cast<std::size_t>(std::popcount(enclosed));
-    if (shut == 0 || shut == starts.size()) return starts.size();
-    std::size_t kept = 0;
+std::size_t keep_starts(std::span<SurfaceStart> starts, std::uint64_t kept) {
+    std::size_t count = 0;
     for (std::size_t i = 0; i < starts.size(); ++i)
-        if ((enclosed >> i & 1u) == 0) starts[kept++] = starts[i];
-    return kept;
+        if ((kept >> i & 1u) != 0) starts[count++] = starts[i];
+    return count;
+}
+
+std::size_t keep_open_points(std::span<SurfaceStart> starts, std::uint64_t enclosed) {
+    const std::size_t kept = static_cast<std::size_t>(std::popcount(enclosed));
+    return kept == starts.size() ? kept : keep_starts(starts, ~enclosed);
 }
 
 }  // namespace lumel

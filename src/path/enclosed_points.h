@@ -27,8 +27,10 @@ std::uint64_t enclosed_points(std::span<const SurfaceStart> starts, float reach,
 // whose walls face outwards are, and the things in such rooms are not enclosed.
 inline constexpr float kEnclosureReach = 8.0f;
 
-// Moves the points that are not of the set `enclosed` to the front and returns how many there are; all, in place, where
-// all are.
+// Moves the starts whose bit is set to the front, in order, and returns how many there are.
+std::size_t keep_starts(std::span<SurfaceStart> starts, std::uint64_t kept);
+
+// The same for the starts that are not of the set `enclosed`; all, in place, where all are.
 std::size_t keep_open_points(std::span<SurfaceStart> starts, std::uint64_t enclosed);
 
 }  // namespace lumel

@@ -8,7 +8,6 @@
 #include "base/check.h"
 #include "base/parallel.h"
 #include "base/try.h"
-#include "path/visible_starts.h"
 
 namespace lumel {
 
@@ -16,39 +15,48 @@ namespace {
 
 static_assert(kBlockEdge * kBlockEdge == kMostTexelsTogether);
 
+class PageFootprints : public FootprintSource {
+public:
+    PageFootprints(const TexelBuffer& texels, const Transport& transport, const ChartSet& charts, const Atlas& atlas)
+        : texels_(texels), transport_(transport), charts_(charts), atlas_(atlas) {}
+    void read(std::size_t texel, Footprint footprint, const FootprintPart& part, TexelPoints& out) const override {
+        texel_points(texels_, texel, transport_.scene, transport_.geometry, charts_, atlas_, footprint, part, out);
+    }
+    // Where it gathers if nothing is in its way.
+    [[nodiscard]] GatherSite site(std::uint32_t i, std::array<SamplePoint, kSamplesPerTexel>& points) const {
+        const std::uint32_t n =
+            sample_points(texels_, i, transport_.scene, transport_.geometry, charts_, atlas_, points);
+        const std::uint64_t id =
+            (std::uint64_t{texels_.page} << 32) | (std::uint64_t{texels_.y[i]} << 16) | texels_.x[i];
+        const std::uint32_t first = texels_.first_triangle[i], end = texels_.first_triangle[i + 1];
+        return {std::span(points).first(n),
+                id,
+                texels_.world_size[i],
+                texels_.valid[i],
+                std::span(&texels_.triangles[first], end - first),
+                this,
+                i};
+    }
+
+private:
+    const TexelBuffer& texels_;
+    const Transport& transport_;
+    const ChartSet& charts_;
+    const Atlas& atlas_;
+};
+
 // Where the texels of a block gather.
 class BlockSites {
 public:
-    void read(std::span<const std::uint32_t> block, const TexelBuffer& texels, const Transport& transport,
-              const ChartSet& charts, const Atlas& atlas) {
+    void read(std::span<const std::uint32_t> block, const PageFootprints& footprints) {
         LUMEL_CHECK(block.size() <= points_.size(), block.size());
         sites_.clear();
-        for (std::size_t k = 0; k < block.size(); ++k) {
-            const std::uint32_t i = block[k];
-            const auto points = [&](Points& out, Footprint footprint) {
-                return std::span<const SamplePoint>(out).first(sample_points(
-                    texels, i, transport.scene, transport.geometry, charts, atlas, out, footprint));
-            };
-            GatherSite site;
-            site.points = points(points_[k], Footprint::gather);
-            if (~texels.valid[i] == 0) site.whole = points(whole_[k], Footprint::whole);
-            site.id = (std::uint64_t{texels.page} << 32) | (std::uint64_t{texels.y[i]} << 16) | texels.x[i];
-            site.texel_size = texels.world_size[i];
-            site.valid = texels.valid[i];
-            const std::uint32_t first = texels.first_triangle[i], end = texels.first_triangle[i + 1];
-            site.triangles = std::span(&texels.triangles[first], end - first);
-            const std::uint32_t middle = site.points[nearest_to_centre(site.valid)].triangle;
-            site.axes =
-                texel_axes(transport.geometry.corners(middle),
-                           atlas.triangle_uv(charts, transport.geometry, transport.scene, middle).texels);
-            sites_.push_back(site);
-        }
+        for (std::size_t k = 0; k < block.size(); ++k) sites_.push_back(footprints.site(block[k], points_[k]));
     }
     [[nodiscard]] std::span<const GatherSite> sites() const { return sites_; }
 
 private:
-    using Points = std::array<SamplePoint, kSamplesPerTexel>;
-    std::array<Points, kMostTexelsTogether> points_, whole_;
+    std::array<std::array<SamplePoint, kSamplesPerTexel>, kMostTexelsTogether> points_;
     std::vector<GatherSite> sites_;
 };
 
@@ -68,13 +76,14 @@ Status gather(const TexelBlocks& blocks, const TexelBuffer& texels, const ChartS
     const PathIntegrator integrator(transport, options);
     std::vector<PathIntegrator::WorkspacePtr> workspaces(context.threads());
     for (auto& workspace : workspaces) workspace = integrator.make_workspace();
+    const PageFootprints footprints(texels, transport, charts, atlas);
     std::vector<BlockSites> sites(context.threads());
     const std::uint64_t rays_before = transport.tracer.statistics().rays;
     const bool done = parallel_for(
         context, blocks.size(), 1,
         [&](const ChunkRange& range) {
             const auto block = blocks.block(range.begin);
-            sites[range.worker].read(block, texels, transport, charts, atlas);
+            sites[range.worker].read(block, footprints);
             integrator.gather_texels(sites[range.worker].sites(), index_of(range.begin), *workspaces[range.worker],
                                      sums, context);
         },

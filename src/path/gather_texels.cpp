@@ -3,6 +3,7 @@
 // lights and sky are combined by MIS; void paths leave the count too; first rays may be guided.
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <optional>
 
 #include "base/check.h"
@@ -17,7 +18,25 @@
 namespace lumel {
 namespace {
 
-constexpr std::uint32_t kFirstRound = 8;  // each is followed by as many samples as there are
+constexpr std::uint32_t kFirstRound = 8;       // each is followed by as many samples as there are
+constexpr std::uint32_t kMostRefinements = 2;  // of where a texel is seen: 64 points in a sixteenth of its breadth
+
+// Of the 64 points of a texel: where no more are seen, they lie so close to what hides the others that their light says
+// little of where lookups read the texel.
+constexpr int kSliver = 8;
+// Where a texel looks for what is seen of it. The strips are the outer halves of where it is looked up, of which too
+// few points tell.
+struct FootprintToTry {
+    Footprint footprint;
+    FootprintPart part;
+};
+constexpr float kStrip = 0.125f;
+constexpr FootprintToTry kFootprints[] = {{Footprint::whole, {}},
+                                          {Footprint::lookup, {}},
+                                          {Footprint::lookup, {{0, 0}, {kStrip, 1}}},
+                                          {Footprint::lookup, {{1 - kStrip, 0}, {1, 1}}},
+                                          {Footprint::lookup, {{0, 0}, {1, kStrip}}},
+                                          {Footprint::lookup, {{0, 1 - kStrip}, {1, 1}}}};
 constexpr std::uint32_t kFewestSamplesForGuide = 64;
 // Of a texel; its block has seen enough of its lights by then. Each new table begins a new sequence of choices, and a
 // choice is the more even the longer its sequence.
@@ -67,25 +86,38 @@ void PathIntegrator::begin_texel(const GatherSite& site, Workspace& w, TexelStat
     if (texel.both_sides) find_sunlit(std::span(texel.back_surfaces).first(n), false, w);
 }
 
-// Where some of the points are not seen, the rest are few or to one side: those of all of its square say more.
+// A texel cut by a wall gathers from all of its square that is seen from each other. One that nothing is seen of can
+// be read nevertheless, by lookups beside what hides it: it gathers from the points of those, as they weigh it.
 std::size_t PathIntegrator::choose_starts(const GatherSite& site, std::uint32_t key, Workspace& w,
                                           std::span<SurfaceStart> starts) const {
-    const VisibleStarts visible(transport_.tracer, transport_.geometry, w.rays, w.hits);
-    const auto choose = [&](std::size_t n) {
+    const VisibleStarts finder(transport_.tracer, transport_.geometry, w.rays, w.hits);
+    const auto find = [&](std::size_t n, std::uint64_t valid, std::span<const std::uint32_t> triangles) {
         const auto all = starts.first(n);
-        const std::uint64_t enclosed =
-            any_double_sided_ ? enclosed_points(all, kEnclosureReach * site.texel_size, mix32(key), transport_.tracer,
-                                                transport_.geometry, w.rays, w.hits)
-                              : 0;
-        return visible.keep_visible(site, all, enclosed, mix32(key + 1));
+        const std::uint64_t enclosed = any_double_sided_
+                                           ? enclosed_points(all, kEnclosureReach * site.texel_size, mix32(key),
+                                                             transport_.tracer, transport_.geometry, w.rays, w.hits)
+                                           : 0;
+        return finder.find({valid, triangles, site.texel_size, enclosed}, all, mix32(key + 1));
     };
-    VisibleStarts::Choice choice = choose(site.points.size());
-    if (choice.fate != StartFate::all && !site.whole.empty()) {
-        surface_starts(site.whole, std::span(w.sides).first(site.whole.size()), w, starts);
-        choice = choose(site.whole.size());
+    const std::size_t n = site.points.size();
+    if (static_cast<std::size_t>(std::popcount(find(n, site.valid, site.triangles).best)) == n) return n;
+
+    for (const auto& [footprint, whole] : kFootprints) {
+        VisibleStarts::Found found;
+        std::optional<FootprintPart> part = whole;
+        for (std::uint32_t attempt = 0; attempt <= kMostRefinements && part; ++attempt) {
+            site.footprints->read(site.texel, footprint, *part, w.points);
+            const auto points = std::span<const SamplePoint>(w.points.at).first(w.points.count);
+            surface_starts(points, std::span(w.sides).first(points.size()), w, starts);
+            found = points.empty() ? VisibleStarts::Found{} : find(points.size(), w.points.valid, w.points.triangles);
+            if (footprint == Footprint::whole && std::popcount(found.best) <= kSliver) found = {};
+            if (found.best == 0) break;
+            part = part_to_refine(*part, w.points.valid, found);
+        }
+        if (found.best != 0) return keep_starts(starts.first(w.points.count), found.best);
     }
-    if (choice.fate == StartFate::hidden) choice = visible.push_out(site, starts.first(choice.count), mix32(key + 2));
-    return choice.count;
+    surface_starts(site.points, std::span(w.sides).first(n), w, starts);
+    return n;
 }
 
 bool PathIntegrator::gather_samples(std::uint32_t first, std::uint32_t last, bool learning, Workspace& w,

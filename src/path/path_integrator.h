@@ -20,7 +20,6 @@
 #include "path/light_rate.h"
 #include "path/radiance_sums.h"
 #include "scene/surface.h"
-#include "texel/texel_axes.h"
 #include "texel/texel_buffer.h"
 #include "trace/tracer.h"
 
@@ -79,18 +78,24 @@ struct SurfaceStart {
     std::uint32_t sunlit = 0;    // bit k: reached by sun k, which has no size; known where many samples share the point
 };
 
+// Points of a texel in other footprints than the one it gathers from if nothing is in its way.
+class FootprintSource {
+public:
+    virtual ~FootprintSource() = default;
+    virtual void read(std::size_t texel, Footprint footprint, const FootprintPart& part, TexelPoints& out) const = 0;
+};
+
 // Where a texel gathers.
 struct GatherSite {
     std::span<const SamplePoint> points;
     std::uint64_t id;  // names the texel for good (page and position), whatever range, thread or shard it is baked in
     float texel_size;  // metres
-    // What tells which of the points lookups show (path/visible_starts.h). Points of all of its square, where `points`
-    // are those of its middle (else empty); which of the Hammersley points these are; its triangles, and its axes at
-    // the point nearest to its centre.
-    std::span<const SamplePoint> whole = {};
+    // Of texels, not of cells: which Hammersley points these are, the triangles that they lie in (ascending), and where
+    // there are others, should some of them be hidden (path/visible_starts.h).
     std::uint64_t valid = 0;
     std::span<const std::uint32_t> triangles = {};
-    TexelAxes axes = {};
+    const FootprintSource* footprints = nullptr;
+    std::size_t texel = 0;  // as footprints->read() knows it
 };
 
 class PathIntegrator {
@@ -128,7 +133,7 @@ public:
 private:
     struct TexelState;
     void begin_texel(const GatherSite& site, Workspace& workspace, TexelState& texel) const;
-    // Starts of the points that lookups show, at the front of `starts`, and their number.
+    // Starts of the points that lookups show, at the front of `starts`, and their number. `key`: of random directions.
     std::size_t choose_starts(const GatherSite& site, std::uint32_t key, Workspace& workspace,
                               std::span<SurfaceStart> starts) const;
     // Samples first to last - 1 of a texel of the workspace. `learning`: for the guide, too. These return false where

@@ -73,6 +73,7 @@ public:
     std::array<PathStart, kWavefrontLanes> starts;
     std::array<SurfaceStart, kSamplesPerTexel> surfaces;  // of a cell
     std::array<std::uint8_t, kSamplesPerTexel> sides;
+    TexelPoints points;  // of a texel that some of its usual points are hidden of
 
     std::vector<TexelState> texels;  // those that are gathered together
     GuideStatistics guide_statistics;

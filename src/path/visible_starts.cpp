@@ -12,13 +12,11 @@
 namespace lumel {
 namespace {
 
-constexpr std::uint32_t kGridEdge = 8;     // one Hammersley point in each of 8 x 8 cells of the texel
-constexpr std::size_t kFewProbes = 16;     // of the points, spread evenly, that are asked before the rest
-constexpr float kLift = 0.05f;             // texels that short rays run above the surface: over its own bumps
-constexpr float kMostVoid = 0.25f;         // share of void rays from where a place lies behind a surface
-constexpr std::uint32_t kOpenRays = 16;    // by which that is judged where a texel would be moved to
-constexpr std::uint32_t kMostAttempts = 3;  // nearest back faces that a texel is moved behind
-constexpr float kSameDistance = 1e-3f;     // of a texel: what differs less is equally near
+constexpr std::uint32_t kGridEdge = 8;  // one Hammersley point in each of 8 x 8 cells of the texel
+constexpr std::size_t kFewProbes = 16;  // of the points, spread evenly, that are asked before the rest
+constexpr float kLift = 0.05f;          // texels that short rays run above the surface: over its own bumps
+constexpr float kMostVoid = 0.03f;      // share of void rays from where a place lies behind a surface
+constexpr int kFewPoints = 16;          // that do not stand well for a component
 
 std::uint32_t cell_of(std::uint32_t s) {
     const Vec2 p = subtexel_point(s);
@@ -32,8 +30,8 @@ struct PointGrid {
 
     PointGrid(std::uint64_t valid, std::size_t n) {
         point.fill(kEmpty);
-        for (std::uint8_t i = 0; i < n && valid != 0; ++i, valid &= valid - 1)
-            point[cell_of(static_cast<std::uint32_t>(std::countr_zero(valid)))] = i;
+        for (std::size_t i = 0; i < n && valid != 0; ++i, valid &= valid - 1)
+            point[cell_of(static_cast<std::uint32_t>(std::countr_zero(valid)))] = static_cast<std::uint8_t>(i);
     }
 
     // Calls visit(a, b) for the first and the last point of each row and each column of cells.
@@ -69,7 +67,7 @@ struct PointGrid {
 class Components {
 public:
     explicit Components(std::size_t n) {
-        for (std::uint8_t i = 0; i < n; ++i) root_[i] = i;
+        for (std::size_t i = 0; i < n; ++i) root_[i] = static_cast<std::uint8_t>(i);
     }
     void join(std::uint8_t a, std::uint8_t b) { root_[root(a)] = root(b); }
     [[nodiscard]] std::uint8_t root(std::uint8_t i) const {
@@ -93,18 +91,6 @@ Ray segment(Vec3 from, Vec3 to) {
 std::uint64_t first_bits(std::size_t n) { return n >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << n) - 1; }
 
 }  // namespace
-
-std::size_t nearest_to_centre(std::uint64_t valid) {
-    std::size_t nearest = 0;
-    float smallest = 1e30f;
-    for (std::size_t i = 0; valid != 0; ++i, valid &= valid - 1) {
-        const Vec2 d = subtexel_point(static_cast<std::uint32_t>(std::countr_zero(valid))) - Vec2{0.5f, 0.5f};
-        if (dot(d, d) >= smallest) continue;
-        smallest = dot(d, d);
-        nearest = i;
-    }
-    return nearest;
-}
 
 VisibleStarts::VisibleStarts(const Tracer& tracer, const WorldGeometry& geometry, std::span<Ray> rays,
                              std::span<Hit> hits)
@@ -134,13 +120,8 @@ std::uint64_t VisibleStarts::void_rays(std::span<const SurfaceStart> starts, std
     return out;
 }
 
-// The texel's own triangles do not part its points: a chord of a curved surface runs below it.
-bool VisibleStarts::blocked(const GatherSite& site, const Hit& hit) const {
-    return !hit.missed() && !std::ranges::binary_search(site.triangles, hit.triangle);
-}
-
-VisibleStarts::Choice VisibleStarts::keep_visible(const GatherSite& site, std::span<SurfaceStart> starts,
-                                                  std::uint64_t enclosed, std::uint32_t key) const {
+VisibleStarts::Found VisibleStarts::find(const Points& points, std::span<const SurfaceStart> starts,
+                                         std::uint32_t key) const {
     const std::size_t n = starts.size();
     LUMEL_CHECK(n <= kSamplesPerTexel, n);
     std::uint64_t voids = void_rays(starts.first(std::min(n, kFewProbes)), 0, key);
@@ -148,14 +129,17 @@ VisibleStarts::Choice VisibleStarts::keep_visible(const GatherSite& site, std::s
     if (voids != 0 && n > kFewProbes) voids |= void_rays(starts, kFewProbes, key);
     const std::uint64_t probed = first_bits(probed_all ? n : kFewProbes);
 
-    const float lift = kLift * site.texel_size;
+    const float lift = kLift * points.texel_size;
     const auto lifted = [&](std::uint8_t i) { return starts[i].origin + starts[i].normal * lift; };
-    const PointGrid grid(site.valid, n);
+    const PointGrid grid(points.valid, n);
     std::size_t count = 0;
     const auto queue = [&](std::uint8_t a, std::uint8_t b) { rays_[count++] = segment(lifted(a), lifted(b)); };
     grid.for_each_line(queue);
     tracer_.closest(rays_.first(count), hits_.first(count));
-    const auto is_blocked = [&](const Hit& hit) { return blocked(site, hit); };
+    // Their own triangles do not part the points: a chord of a curved surface runs below it.
+    const auto is_blocked = [&](const Hit& hit) {
+        return !hit.missed() && !std::ranges::binary_search(points.triangles, hit.triangle);
+    };
     Components components(n);
     if (std::ranges::any_of(hits_.first(count), is_blocked)) {
         count = 0;
@@ -166,83 +150,47 @@ VisibleStarts::Choice VisibleStarts::keep_visible(const GatherSite& site, std::s
             if (!is_blocked(hits_[count++])) components.join(a, b);
         });
     } else {
-        for (std::uint8_t i = 1; i < n; ++i) components.join(i, 0);
+        for (std::size_t i = 1; i < n; ++i) components.join(static_cast<std::uint8_t>(i), 0);
     }
 
     std::array<std::uint64_t, kSamplesPerTexel> members{};
-    for (std::uint8_t i = 0; i < n; ++i) members[components.root(i)] |= std::uint64_t{1} << i;
-    std::uint64_t best = 0;
+    for (std::size_t i = 0; i < n; ++i) members[components.root(static_cast<std::uint8_t>(i))] |= std::uint64_t{1} << i;
+    Found found;
     float most = 0.0f;
     for (const std::uint64_t m : members) {
         const int asked = std::popcount(m & probed);
-        const float share = asked == 0 ? 0.0f : static_cast<float>(std::popcount(m & voids)) / static_cast<float>(asked);
+        const float share =
+            asked == 0 ? 0.0f : static_cast<float>(std::popcount(m & voids)) / static_cast<float>(asked);
         const float weight =
-            static_cast<float>(std::popcount(m & ~enclosed)) * std::max(0.0f, 1.0f - share / kMostVoid);
+            static_cast<float>(std::popcount(m & ~points.enclosed)) * std::max(0.0f, 1.0f - share / kMostVoid);
+        if (weight > 0.0f) found.open |= m & ~points.enclosed;
         if (weight <= most) continue;
         most = weight;
-        best = m & ~enclosed;
+        found.best = m & ~points.enclosed;
     }
-    if (best == 0) return {StartFate::hidden, n};
-    if (best == first_bits(n)) return {StartFate::all, n};
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < n; ++i)
-        if ((best >> i & 1u) != 0) starts[kept++] = starts[i];
-    return {StartFate::some, kept};
+    return found;
 }
 
-bool VisibleStarts::is_open(const SurfaceStart& start, std::uint32_t key) const {
-    std::array<SurfaceStart, kOpenRays> same;
-    same.fill(start);
-    return static_cast<float>(std::popcount(void_rays(same, 0, key))) <= kMostVoid * kOpenRays;
-}
-
-VisibleStarts::Choice VisibleStarts::push_out(const GatherSite& site, std::span<SurfaceStart> starts,
-                                              std::uint32_t key) const {
-    const Choice stays{StartFate::hidden, starts.size()};
-    if (!site.axes.known()) return stays;
-    const SurfaceStart start = starts[std::min(nearest_to_centre(site.valid), starts.size() - 1)];
-    const Vec3 from = start.origin + start.normal * (kLift * site.texel_size);
-    const Vec3 x = site.axes.x, y = site.axes.y;
-    const std::array<Vec3, 8> steps{x, -x, y, -y, x + y, x - y, y - x, -x - y};
-    for (std::size_t i = 0; i < steps.size(); ++i) rays_[i] = segment(from, from + steps[i]);
-    tracer_.closest(rays_.first(steps.size()), hits_.first(steps.size()));
-
-    struct Exit {
-        Vec3 step, normal;
-        float distance, reach;
+std::optional<FootprintPart> part_to_refine(const FootprintPart& part, std::uint64_t valid,
+                                            const VisibleStarts::Found& found) {
+    if (std::popcount(found.best) >= kFewPoints) return std::nullopt;
+    std::uint32_t low_x = kGridEdge, low_y = kGridEdge, high_x = 0, high_y = 0;
+    for (std::uint64_t open = found.open; open != 0; open >>= 1, valid &= valid - 1) {
+        if ((open & 1u) == 0) continue;
+        const std::uint32_t cell = cell_of(static_cast<std::uint32_t>(std::countr_zero(valid)));
+        low_x = std::min(low_x, cell % kGridEdge);
+        high_x = std::max(high_x, cell % kGridEdge);
+        low_y = std::min(low_y, cell / kGridEdge);
+        high_y = std::max(high_y, cell / kGridEdge);
+    }
+    // What is seen may reach into the cells beside those whose points are.
+    const auto edges = [](std::uint32_t low, std::uint32_t high) {
+        return Vec2{static_cast<float>(std::max(low, 1u) - 1), static_cast<float>(std::min(high + 2, kGridEdge))} *
+               (1.0f / kGridEdge);
     };
-    std::array<Exit, steps.size()> exits;
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < steps.size(); ++i) {
-        if (!blocked(site, hits_[i]) || !hits_[i].back_face) continue;
-        exits[count++] = {rays_[i].direction, geometry_.geometric_normal(hits_[i].triangle), hits_[i].t, rays_[i].tmax};
-    }
-    // Equally near exits are taken in the order of the texel's own axes, however the scene is turned.
-    const float same = kSameDistance * site.texel_size;
-    std::stable_sort(exits.begin(), exits.begin() + static_cast<std::ptrdiff_t>(count), [&](const Exit& a, const Exit& b) {
-        return std::floor(a.distance / same) < std::floor(b.distance / same);
-    });
-    for (std::size_t k = 0; k < std::min<std::size_t>(count, kMostAttempts); ++k) {
-        const Exit& exit = exits[k];
-        // Of what the texel's weight in lookups (a tent of one texel) leaves beyond the wall, the centre lies a third in.
-        const Vec3 along = exit.normal - start.normal * dot(exit.normal, start.normal);
-        const Vec3 out = normalize_or(along, exit.step);
-        const float beyond = std::max(kLift * site.texel_size, (exit.reach - exit.distance) / 3.0f);
-        SurfaceStart moved = start;
-        const Vec3 wall = exit.step * exit.distance;
-        for (const float share : {1.0f, 0.25f}) {
-            const Vec3 move = wall + out * (share * beyond);
-            Ray& ray = rays_[0] = segment(from + wall + out * (0.1f * share * beyond), from + move);
-            tracer_.closest(std::span(&ray, 1), hits_.first(1));
-            if (blocked(site, hits_[0])) continue;
-            moved.origin = start.origin + move;
-            moved.skip = kNone;
-            if (!is_open(moved, key)) continue;
-            starts[0] = moved;
-            return {StartFate::moved, 1};
-        }
-    }
-    return stays;
+    const Vec2 x = edges(low_x, high_x), y = edges(low_y, high_y), size = part.high - part.low;
+    if (x.y - x.x + y.y - y.x >= 2.0f) return std::nullopt;
+    return FootprintPart{part.low + Vec2{x.x, y.x} * size, part.low + Vec2{x.y, y.y} * size};
 }
 
 }  // namespace lumel

@@ -1,14 +1,15 @@
-// Which sample points of a texel lookups show: not those inside or below a solid, nor those beyond a wall. Points are
-// parted into components that see each other along short rays, and the texel takes the light of one of them, however
-// thin the wall between. A texel without any is moved out of what it is in.
-// Based on: O'Donnell 2018 (validity of sub-texel samples by back faces); the article "Baking artifact-free lightmaps on
-// the GPU" (2018), "shadow leaks" (tangential rays, half a texel long, that push a sample out of back faces).
-// Different here: components, which need no back faces; rays along the texel's true axes, of which the nearest hit
-// decides, whatever their order; and only texels without a visible point are moved.
+// Which points of a texel lookups show: not those inside or below a solid, nor those beyond a wall. They are parted
+// into components that see each other along short rays, and the texel takes the light of one of them, however thin the
+// wall between. Where none is left, PathIntegrator::choose_starts goes on with a wider footprint.
+// Based on: O'Donnell 2018 (validity of sub-texel samples by back faces).
+// Different here: components, which need no back faces. The article "Baking artifact-free lightmaps on the GPU" (2018)
+// pushes points out of the back faces that tangential rays meet; what these find depends on their order and may lie off
+// the chart, where no lookup reads the texel.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "path/path_integrator.h"
@@ -16,39 +17,28 @@
 
 namespace lumel {
 
-// What became of a texel's points.
-enum class StartFate : std::uint8_t {
-    all,     // every point counts
-    some,    // those of one component
-    moved,   // none is visible: one start beside what the texel is in
-    hidden,  // none, and nothing near to be moved out of: all stay as they are
-};
-
 class VisibleStarts {
 public:
-    // `rays`, `hits`: scratch memory, 256 or more of each. `enclosed`: bit per start, as of enclosed_points().
+    // `rays`, `hits`: scratch memory, 256 or more of each.
     VisibleStarts(const Tracer& tracer, const WorldGeometry& geometry, std::span<Ray> rays, std::span<Hit> hits);
 
-    struct Choice {
-        StartFate fate;
-        std::size_t count;  // of starts, at the front
+    struct Points {
+        std::uint64_t valid;                       // TexelPoints::valid
+        std::span<const std::uint32_t> triangles;  // TexelPoints::triangles
+        float texel_size;                          // metres
+        std::uint64_t enclosed;                    // bit i: of start i, enclosed_points()
     };
-    // `starts`: of the points of the site, in their order, or of site.whole. The component with most points that are
-    // open: neither enclosed nor where a quarter of the component's rays is void. `hidden` is returned where there is
-    // none. `key`: of random directions.
-    Choice keep_visible(const GatherSite& site, std::span<SurfaceStart> starts, std::uint64_t enclosed,
-                        std::uint32_t key) const;
-
-    // Rays from the start nearest to the texel's centre along its axes and diagonals, as far as lookups blend a texel
-    // (one texel): behind the nearest back face that is met first, and from where no more than a quarter of the rays is
-    // void, lies the new start, starts[0].
-    Choice push_out(const GatherSite& site, std::span<SurfaceStart> starts, std::uint32_t key) const;
+    struct Found {
+        std::uint64_t best = 0;  // bit i: start i is of the component with most open points; none where none has any
+        std::uint64_t open = 0;  // all open ones
+    };
+    // Open are points that are not enclosed, in a component of which less than three in a hundred of the rays (one a
+    // point) are void. `key`: of random directions.
+    [[nodiscard]] Found find(const Points& points, std::span<const SurfaceStart> starts, std::uint32_t key) const;
 
 private:
     [[nodiscard]] std::uint64_t void_rays(std::span<const SurfaceStart> starts, std::size_t first,
                                           std::uint32_t key) const;
-    [[nodiscard]] bool is_open(const SurfaceStart& start, std::uint32_t key) const;
-    [[nodiscard]] bool blocked(const GatherSite& site, const Hit& hit) const;
 
     const Tracer& tracer_;
     const WorldGeometry& geometry_;
@@ -56,7 +46,9 @@ private:
     std::span<Hit> hits_;
 };
 
-// Which of the points of a texel with these valid Hammersley points is nearest to its centre; 0 where it has but one.
-std::size_t nearest_to_centre(std::uint64_t valid);
+// The part of a footprint around its open points (bits by rank in TexelPoints::valid), where those that were found are
+// so few that others should stand for them; nothing where they are many or all around.
+std::optional<FootprintPart> part_to_refine(const FootprintPart& part, std::uint64_t valid,
+                                            const VisibleStarts::Found& found);
 
 }  // namespace lumel

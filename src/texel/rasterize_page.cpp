@@ -7,7 +7,6 @@
 #include "base/cancelled.h"
 #include "base/check.h"
 #include "base/parallel.h"
-#include "texel/texel_axes.h"
 #include "texel/texel_buffer.h"
 #include "texel/texel_samples.h"
 #include "texel/texel_triangle.h"
@@ -16,6 +15,21 @@ namespace lumel {
 namespace {
 
 constexpr std::uint32_t kBandRows = 16;
+
+// Metres across a texel of this triangle: the longer edge of the parallelogram that its square is on the surface.
+float metres_per_texel(const std::array<Vec3, 3>& world, const std::array<Vec2, 3>& texels) {
+    const Vec3 p = world[1] - world[0], q = world[2] - world[0];
+    const float longest = std::max({length(p), length(q), length(q - p)});
+    const double ux = double{texels[1].x} - texels[0].x, uy = double{texels[1].y} - texels[0].y;
+    const double vx = double{texels[2].x} - texels[0].x, vy = double{texels[2].y} - texels[0].y;
+    const double twice_area = ux * vy - uy * vx;
+    // Below one part in 10^5 a triangle has no width to measure by; all of it lies within a texel's breadth.
+    const double squared_length = std::max({ux * ux + uy * uy, vx * vx + vy * vy});
+    if (!(std::fabs(twice_area) > 1e-5 * squared_length)) return longest;
+    const auto s = [&](double x) { return static_cast<float>(x / twice_area); };
+    const Vec3 along_x = p * s(vy) - q * s(uy), along_y = q * s(ux) - p * s(vx);
+    return std::max(length(along_x), length(along_y));
+}
 
 // The texels of one band, as the arrays of a TexelBuffer.
 struct Band {

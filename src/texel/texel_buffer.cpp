@@ -1,6 +1,8 @@
 #include "texel/texel_buffer.h"
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include "base/check.h"
 #include "texel/texel_samples.h"
@@ -64,7 +66,51 @@ bool locate_all(const TexelSamples& samples, std::uint64_t valid, std::span<cons
     return false;
 }
 
+// From a number evenly spread over [0, 1) to one as densely spread as a tent over (-1, 1) is high.
+double tent(double u) { return u < 0.5 ? std::sqrt(2.0 * u) - 1.0 : 1.0 - std::sqrt(2.0 * (1.0 - u)); }
+
+// Triangles of the texel, and of those up to `reach` texels around it that are of its chart; ascending.
+void triangles_around(const TexelBuffer& texels, std::size_t texel, std::int32_t reach,
+                      std::vector<std::uint32_t>& out) {
+    out.clear();
+    for (std::int32_t dy = -reach; dy <= reach; ++dy)
+        for (std::int32_t dx = -reach; dx <= reach; ++dx) {
+            const std::uint32_t i = texels.at(texels.x[texel] + dx, texels.y[texel] + dy);
+            if (i == kNone || texels.chart[i] != texels.chart[texel]) continue;
+            for (std::uint32_t k = texels.first_triangle[i]; k < texels.first_triangle[i + 1]; ++k)
+                out.push_back(texels.triangles[k]);
+        }
+    std::ranges::sort(out);
+    out.erase(std::unique(out.begin(), out.end()), out.end());
+}
+
 }  // namespace
+
+void texel_points(const TexelBuffer& texels, std::size_t texel, const Scene& scene, const WorldGeometry& geometry,
+                  const ChartSet& charts, const Atlas& atlas, Footprint footprint, const FootprintPart& part,
+                  TexelPoints& out) {
+    LUMEL_CHECK(footprint != Footprint::gather);
+    const bool lookup = footprint == Footprint::lookup;
+    triangles_around(texels, texel, lookup ? 1 : 0, out.triangles);
+    std::vector<TexelTriangle> uv;
+    uv.reserve(out.triangles.size());
+    for (const std::uint32_t triangle : out.triangles)
+        uv.emplace_back(atlas.triangle_uv(charts, geometry, scene, triangle).texels);
+    out.count = 0;
+    out.valid = 0;
+    for (std::uint32_t s = 0; s < kSamplesPerTexel; ++s) {
+        const Vec2 p = part.low + subtexel_point(s) * (part.high - part.low);
+        const double x = texels.x[texel] + (lookup ? 0.5 + tent(double{p.x}) : double{p.x});
+        const double y = texels.y[texel] + (lookup ? 0.5 + tent(double{p.y}) : double{p.y});
+        for (std::size_t k = 0; k < uv.size(); ++k) {
+            const auto b = uv[k].locate(x, y);
+            if (!b) continue;
+            out.at[out.count++] = {out.triangles[k], b->b1, b->b2};
+            out.valid |= std::uint64_t{1} << s;
+            break;
+        }
+    }
+}
 
 std::uint32_t sample_points(const TexelBuffer& texels, std::size_t texel, const Scene& scene,
                             const WorldGeometry& geometry, const ChartSet& charts, const Atlas& atlas,

@@ -82,13 +82,34 @@ Result<TexelBuffer> rasterize_page(const Scene& scene, const WorldGeometry& geom
                                    const Atlas& atlas, std::uint32_t page,
                                    std::span<const std::uint32_t> page_triangles, Context& context);
 
-// From how much of a texel that is covered whole its points gather: kGatherFootprint of it, or all.
-enum class Footprint : std::uint8_t { gather, whole };
+// Where the points of a texel lie: of a texel that is covered whole in kGatherFootprint of it, or in all of it; or
+// wherever bilinear lookups blend the texel in, a square of two texels, as densely as they weigh it.
+enum class Footprint : std::uint8_t { gather, whole, lookup };
+
+// Part of a footprint, in its own unit square.
+struct FootprintPart {
+    Vec2 low{0, 0}, high{1, 1};
+};
+
+// The points of a texel in one of its footprints.
+struct TexelPoints {
+    std::array<SamplePoint, kSamplesPerTexel> at;
+    std::uint32_t count = 0;
+    std::uint64_t valid = 0;                 // bit s: Hammersley point s is among them; 0 where one stands for all
+    std::vector<std::uint32_t> triangles{};  // world triangles that they may lie in, ascending
+};
 
 // Expands the valid sample points of a texel, in order of s; at least one: where no Hammersley point lies inside a
 // triangle it is the middle of the largest part that a triangle shares with the texel. Returns how many were written.
+// Not of Footprint::lookup.
 std::uint32_t sample_points(const TexelBuffer& texels, std::size_t texel, const Scene& scene,
                             const WorldGeometry& geometry, const ChartSet& charts, const Atlas& atlas,
                             std::span<SamplePoint, kSamplesPerTexel> out, Footprint footprint = Footprint::gather);
+
+// The Hammersley points of all or part of a texel's square (Footprint::whole) or of where it is looked up, that lie on
+// its chart, and all that is known of them; there may be none. Not of Footprint::gather.
+void texel_points(const TexelBuffer& texels, std::size_t texel, const Scene& scene, const WorldGeometry& geometry,
+                  const ChartSet& charts, const Atlas& atlas, Footprint footprint, const FootprintPart& part,
+                  TexelPoints& out);
 
 }  // namespace lumel
