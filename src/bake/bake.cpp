@@ -69,7 +69,13 @@ Result<Atlas> make_atlas_within_memory(const Scene& scene, const WorldGeometry& 
     const Diagnostics before = context.diagnostics;
     for (;;) {
         context.diagnostics = before;  // what a layout that is given up had to say is of no interest
-        LUMEL_TRY(Atlas atlas, make_atlas(scene, geometry, charts, options, context));
+        Result<Atlas> made = make_atlas(scene, geometry, charts, options, context);
+        if (!made.ok() && made.error().code == ErrorCode::out_of_memory && max_memory != 0) {
+            Error error = made.error();
+            error.remedy += ", or raise --max-memory";
+            return error;
+        }
+        LUMEL_TRY(Atlas atlas, std::move(made));
         report.predicted_memory_bytes = bake_memory(scene, geometry, atlas, cell_samples, context.threads());
         if (max_memory == 0 || report.predicted_memory_bytes <= max_memory) return atlas;
         if (one_page || is_kept || options.max_page <= kSmallestPage) break;
@@ -277,8 +283,9 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
         LUMEL_TRY(tracer, make_embree_tracer(geometry, surfaces, context));
     }
     Transport transport{scene, geometry, surfaces, lights, *tracer};
-    // Both sides of a surface share its texels, so that neither alone can be called dark.
-    if (!charts.scene_wide && !(options.texels_per_metre > 0.0) && !options.two_sided) {
+    // Both sides of a surface share its texels, so that neither alone can be called dark. A layout that is kept has a
+    // density of its own, as if it had been asked for.
+    if (!charts.scene_wide && !(options.texels_per_metre > 0.0) && !options.two_sided && !options.atlas) {
         const StageTimer timer(report, "sealed");
         LUMEL_TRY(charts.sealed, find_sealed_charts(charts, texel_budget(options), transport, context));
         report.trace_wall_seconds += timer.seconds();

@@ -1,12 +1,15 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
 #include <map>
+#include <memory>
 #include <string>
 
 #include "base/hash.h"
+#include "chart/atlas_record.h"
 #include "chart/chart_set.h"
 #include "lumel/bake.h"
 #include "path/gather_page.h"
@@ -323,6 +326,50 @@ TEST(Bake, TooLittleMemoryIsAnErrorThatSaysHowMuchIsNeeded) {
     const auto less = bake(test::room(), options, no_sink(), context);
     ASSERT_FALSE(less.ok());
     EXPECT_EQ(megabytes_needed(less.error()), needed);
+}
+
+// A density whose charts alone take more is an error before they are drawn, and says what to lower.
+TEST(Bake, ADensityThatNoMemoryHoldsIsNotDrawn) {
+    BakeOptions options = small_options();
+    options.texels_per_metre = 1e6;
+    options.max_memory_bytes = 2 << 20;  // a wall of 4096 x 4096 texels takes as much
+    Context context(1);
+    const auto result = bake(test::room(), options, no_sink(), context);
+    ASSERT_FALSE(result.ok());
+    EXPECT_EQ(result.error().code, ErrorCode::out_of_memory);
+    EXPECT_NE(result.error().message.find("masks of"), std::string::npos) << result.error().message;
+    EXPECT_NE(result.error().remedy.find("--texels-per-metre"), std::string::npos);
+    EXPECT_NE(result.error().remedy.find("--max-memory"), std::string::npos);
+}
+
+// With a layout to keep nothing is traced for it: its density is given, and new charts are those of `lumel atlas`.
+TEST(Bake, SealedChartsAreNotLookedForInALayoutThatIsKept) {
+    const Scene scene = test::room();
+    BakeOptions options = small_options();
+    options.samples = 1;
+    options.texels_per_metre = 0.0;
+    options.resolution_width = options.resolution_height = 64;
+    const auto record = std::make_shared<AtlasRecord>();
+    BakeSink sink = no_sink();
+    sink.layout = [&](const WorldGeometry&, const ChartSet& charts, const Atlas& atlas) {
+        record->density = atlas.density;
+        record->pages = atlas.pages;
+        const std::vector<ChartName> names = chart_names(scene, charts);
+        record->charts.clear();
+        for (std::size_t i = 0; i < names.size(); ++i)
+            record->charts.push_back({names[i], atlas.placements[i].page, atlas.placements[i].box});
+        return success();
+    };
+    const auto looked_for = [&] {
+        Context context(1);
+        const auto report = bake(scene, options, sink, context);
+        EXPECT_TRUE(report.ok()) << (report.ok() ? "" : report.error().text());
+        return report.ok() && std::ranges::any_of(report->stages, [](const auto& s) { return s.stage == "sealed"; });
+    };
+    EXPECT_TRUE(looked_for());
+    options.atlas = std::make_shared<const AtlasRecord>(*record);
+    EXPECT_FALSE(looked_for());
+    EXPECT_EQ(record->density, options.atlas->density);
 }
 
 // Where the cells do not fit, the default bakes without them and says so; who asked for them is told what to do.

@@ -1,5 +1,7 @@
 #include "bake/chart_options.h"
 
+#include <algorithm>
+
 namespace lumel {
 namespace {
 
@@ -23,6 +25,7 @@ ChartOptions chart_options(const BakeOptions& options) {
     out.max_page = options.max_page;
     out.texels_per_metre = options.texels_per_metre;
     out.texel_budget = preset_values(options.preset).texel_budget;
+    if (options.max_memory_bytes != 0) out.max_mask_bytes = std::min(out.max_mask_bytes, options.max_memory_bytes);
     out.previous = options.atlas.get();
     return out;
 }

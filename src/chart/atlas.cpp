@@ -101,7 +101,7 @@ private:
                 std::max(options_.texel_budget, 2.0 * least_texels(instances_, BudgetOf::baked, options_.masks));
             LUMEL_TRY(density_, solve_density(charts_, instances_, budget, BudgetOf::baked, limit, context_));
         }
-        if (!draw(limit)) return cancelled_error();
+        LUMEL_TRY_STATUS(draw(limit));
         packing_ = pack(sized_.masks, items(), options_.max_page / cell(), context_);
         if (!packing_.complete) return cancelled_error();
         report_clamped();
@@ -148,7 +148,10 @@ private:
             sizes[k] = {then.box.width, then.box.height};
             spots[k] = {then.page, then.box.x / cell(), then.box.y / cell()};
         }
-        if (!draw(limit, sizes)) return cancelled_error();
+        // New charts are drawn at that density: only a chart of then that has it vouches for it.
+        if (std::ranges::all_of(spots, [](const PackSpot& spot) { return spot.page == kNone; }))
+            return nothing_kept(record);
+        LUMEL_TRY_STATUS(draw(limit, sizes));
         std::vector<PackPage> pages;
         for (const AtlasPage& page : record.pages) pages.push_back({page.width / cell(), page.height / cell(), 0});
         if (const std::size_t dropped = drop_conflicts(sized_.masks, items(), pages, spots); dropped > 0)
@@ -164,8 +167,17 @@ private:
         return success();
     }
 
+    [[nodiscard]] Error nothing_kept(const AtlasRecord& record) const {
+        char density[32];
+        std::snprintf(density, sizeof density, "%.4g", record.density);
+        return {ErrorCode::usage,
+                "its layout cannot be kept: none of its " + std::to_string(record.charts.size()) +
+                    " charts is one of this scene, with the texels that " + density + " per metre give it",
+                record.where, "leave out --atlas, or give the layout of an earlier state of this scene"};
+    }
+
     Result<bool> try_resolution(SizeLimit limit) {
-        if (!draw(limit)) return cancelled_error();
+        LUMEL_TRY_STATUS(draw(limit));
         if (static_cast<double>(sized_.used) > page_texels()) return false;
         packing_ = pack_one_page(sized_.masks, items(), options_.resolution_width / cell(),
                                  options_.resolution_height / cell(), context_);
@@ -191,10 +203,24 @@ private:
                                                   : "ask for a larger --resolution, or none to have several pages"};
     }
 
-    bool draw(SizeLimit limit, std::span<const std::array<std::uint32_t, 2>> fixed = {}) {
+    Status draw(SizeLimit limit, std::span<const std::array<std::uint32_t, 2>> fixed = {}) {
+        const std::uint64_t bytes = mask_bytes(charts_, instances_, density_, limit, fixed);
+        if (bytes > options_.max_mask_bytes) return too_dense(bytes);
         std::optional<SizedCharts> sized = size_charts(charts_, instances_, density_, limit, context_, fixed);
-        if (sized) sized_ = std::move(*sized);
-        return sized.has_value();
+        if (!sized) return cancelled_error();
+        sized_ = std::move(*sized);
+        return success();
+    }
+
+    [[nodiscard]] Error too_dense(std::uint64_t bytes) const {
+        const auto megabytes = [](std::uint64_t b) { return std::to_string((b + (1u << 20) - 1) >> 20) + " MB"; };
+        char density[32];
+        std::snprintf(density, sizeof density, "%.4g", density_);
+        return {
+            ErrorCode::out_of_memory,
+            "the masks of " + std::to_string(instances_.size()) + " charts at " + density + " texels per metre take " +
+                megabytes(bytes) + ", and " + megabytes(options_.max_mask_bytes) + " are allowed",
+            scene_.source, options_.previous ? "leave out --atlas, whose density that is" : "lower --texels-per-metre"};
     }
 
     [[nodiscard]] std::vector<PackItem> items() const {

@@ -180,6 +180,21 @@ TEST_F(StickyAtlas, SaysWhyALayoutCannotBeKept) {
     EXPECT_NE(error_of(usual()).find("TEXCOORD_1"), std::string::npos) << error_of(usual());
 }
 
+// A density that no chart of then was drawn at is that of a damaged file, or of another scene: new charts, or all,
+// would be drawn at it.
+TEST_F(StickyAtlas, ADensityThatNoChartHasIsNotBelieved) {
+    const AtlasRecord good = record;
+    record.density = 2e5;
+    EXPECT_NE(error_of(usual()).find("none of its "), std::string::npos) << error_of(usual());
+    EXPECT_NE(error_of(usual()).find("2e+05 per metre"), std::string::npos) << error_of(usual());
+    record = good;
+    for (AtlasRecord::Chart& chart : record.charts) chart.name.id += 1;
+    EXPECT_NE(error_of(usual()).find("none of its "), std::string::npos) << error_of(usual());
+    // One that is the same is enough.
+    record.charts[3] = good.charts[3];
+    EXPECT_EQ(layout_keeping(before, record, usual()).atlas.kept, 1u);
+}
+
 // The density of then may be asked for by its number, and the page by its size.
 TEST_F(StickyAtlas, TheSameAskedForIsNoObstacle) {
     ChartOptions options = usual();

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/hash.h"
+#include "base/stopwatch.h"
 #include "chart/chart_set.h"
 #include "support/chart_layouts.h"
 
@@ -201,6 +202,31 @@ TEST(Atlas, WhatDoesNotFitIsAnError) {
     const auto dense = make_atlas(level.scene, level.geometry, *charts, options, context);
     ASSERT_FALSE(dense.ok());
     EXPECT_NE(dense.error().text().find("--texels-per-metre"), std::string::npos);
+}
+
+// 400 walls of 4096 x 4096 texels are 800 MiB of masks, and half a minute to draw and pack: it is not begun.
+TEST(Atlas, WhatWouldTakeTooMuchMemoryIsNotDrawn) {
+    LevelBuilder builder;
+    for (int i = 0; i < 400; ++i) {
+        const float size = 1.0f + 0.001f * static_cast<float>(i);
+        builder.instance(builder.mesh(test::flat_grid(1, size)),
+                         scaled({1, 1, 1}, {2.0f * static_cast<float>(i), 0, 0}));
+    }
+    const Level level = builder.build();
+    ChartOptions options;
+    options.texels_per_metre = 1e6;
+    options.max_mask_bytes = 600 << 20;
+    Context context(1);
+    const auto charts = make_charts(level.scene, level.geometry, options, context);
+    ASSERT_TRUE(charts.ok());
+    const Stopwatch clock;
+    const auto atlas = make_atlas(level.scene, level.geometry, *charts, options, context);
+    ASSERT_FALSE(atlas.ok());
+    EXPECT_LT(clock.seconds(), 2.0) << "drawing one of the 400 masks takes some ten milliseconds";
+    EXPECT_EQ(atlas.error().code, ErrorCode::out_of_memory);
+    EXPECT_EQ(atlas.error().message,
+              "the masks of 400 charts at 1e+06 texels per metre take 800 MB, and 600 MB are allowed");
+    EXPECT_NE(atlas.error().remedy.find("--texels-per-metre"), std::string::npos);
 }
 
 TEST(Atlas, RefusesMasksThatCannotBe) {

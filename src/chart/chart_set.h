@@ -103,6 +103,7 @@ struct ChartOptions {
     std::uint32_t max_page = 4096;                              // largest page edge, texels, 64..16384
     double texels_per_metre = 0.0;                              // 0: solved from the budget
     double texel_budget = 250000.0;                             // texels, where no density is asked
+    std::uint64_t max_mask_bytes = std::uint64_t{2} << 30;      // of all masks together, while charts are packed
     MaskRule masks;                                             // what the runtime's lookups touch; not of kept layouts
     // Charts that are still the same keep their places (chart/atlas_record.h). None: all are packed anew.
     const AtlasRecord* previous = nullptr;
@@ -124,7 +125,8 @@ Result<ChartSet> make_charts(const Scene& scene, const WorldGeometry& geometry, 
 
 // Places the charts of every lightmap instance. Errors: usage where they cannot fit the asked resolution, where the
 // masks are of a rule that cannot be, or the resolution is no multiple of its cells, and where the options do not allow
-// to keep the previous layout.
+// to keep the previous layout; out_of_memory where the masks at this density would take more than
+// ChartOptions::max_mask_bytes: before any is drawn.
 // Diagnostics: "chart-clamped" (nodes with charts larger than a page, and the density that is left to them).
 Result<Atlas> make_atlas(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts,
                          const ChartOptions& options, Context& context);

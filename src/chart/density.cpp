@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 #include <tuple>
+#include <utility>
 
 #include "base/cancelled.h"
 #include "base/parallel.h"
@@ -116,6 +117,22 @@ Sized size_chart(const ChartSet& charts, const ChartInstance& c, double density,
     return {{c.mesh, c.chart, width, height}, size_x * size_y, share_x * share_y};
 }
 
+// Where the size of a chart is given, that.
+Drawing drawing_of(const Sized& chart, std::size_t k, std::span<const std::array<std::uint32_t, 2>> fixed) {
+    Drawing out = chart.drawing;
+    if (fixed.empty() || fixed[k][0] == 0) return out;
+    out.width = fixed[k][0];
+    out.height = fixed[k][1];
+    return out;
+}
+
+// Each once, in order.
+std::vector<Drawing> distinct(std::vector<Drawing> drawings) {
+    std::sort(drawings.begin(), drawings.end());
+    drawings.erase(std::unique(drawings.begin(), drawings.end()), drawings.end());
+    return drawings;
+}
+
 ChartMask draw(const ChartSet& charts, const Drawing& d, const MaskRule& rule) {
     const MeshCharts& mesh = charts.meshes[d.mesh];
     const Chart& chart = mesh.charts[d.chart];
@@ -153,11 +170,7 @@ std::optional<SizedCharts> size_charts(const ChartSet& charts, const std::vector
     double area = 0.0, area_reached = 0.0, least = 1.0;
     for (std::uint32_t k = 0; k < instances.size(); ++k) {
         const Sized chart = size_chart(charts, instances[k], texels_per_metre, limit);
-        wanted.push_back(chart.drawing);
-        if (!fixed.empty() && fixed[k][0] != 0) {
-            wanted.back().width = fixed[k][0];
-            wanted.back().height = fixed[k][1];
-        }
+        wanted.push_back(drawing_of(chart, k, fixed));
         area += chart.area;
         area_reached += chart.area * chart.share;
         least = std::min(least, chart.share);
@@ -165,10 +178,7 @@ std::optional<SizedCharts> size_charts(const ChartSet& charts, const std::vector
     }
     sized.reached = texels_per_metre * (area > 0.0 ? std::sqrt(area_reached / area) : 1.0);
     sized.least = texels_per_metre * std::sqrt(least);
-    std::vector<Drawing> drawings = wanted;
-    std::sort(drawings.begin(), drawings.end());
-    drawings.erase(std::unique(drawings.begin(), drawings.end()), drawings.end());
-
+    const std::vector<Drawing> drawings = distinct(wanted);
     sized.masks.resize(drawings.size());
     const bool done = parallel_for(context, drawings.size(), 64, [&](const ChunkRange& range) {
         for (std::size_t i = range.begin; i < range.end; ++i) sized.masks[i] = draw(charts, drawings[i], limit.rule);
@@ -184,6 +194,18 @@ std::optional<SizedCharts> size_charts(const ChartSet& charts, const std::vector
         sized.covered += sized.masks[sized.mask_of.back()].covered;
     }
     return sized;
+}
+
+std::uint64_t mask_bytes(const ChartSet& charts, const std::vector<ChartInstance>& instances, double texels_per_metre,
+                         SizeLimit limit, std::span<const std::array<std::uint32_t, 2>> fixed) {
+    std::vector<Drawing> drawings;
+    drawings.reserve(instances.size());
+    for (std::size_t k = 0; k < instances.size(); ++k)
+        drawings.push_back(drawing_of(size_chart(charts, instances[k], texels_per_metre, limit), k, fixed));
+    std::uint64_t bytes = 0;
+    for (const Drawing& d : distinct(std::move(drawings)))
+        bytes += ChartMask::bytes_of(limit.rule.cells(d.width), limit.rule.cells(d.height));
+    return bytes;
 }
 
 bool has_size(const ChartSet& charts, const ChartInstance& instance, double texels_per_metre, SizeLimit limit,

@@ -50,6 +50,10 @@ std::optional<SizedCharts> size_charts(const ChartSet& charts, const std::vector
                                        double texels_per_metre, SizeLimit limit, Context& context,
                                        std::span<const std::array<std::uint32_t, 2>> fixed = {});
 
+// What the masks of size_charts() take, bytes, without drawing them.
+std::uint64_t mask_bytes(const ChartSet& charts, const std::vector<ChartInstance>& instances, double texels_per_metre,
+                         SizeLimit limit, std::span<const std::array<std::uint32_t, 2>> fixed = {});
+
 // Is this the size of a box that size_charts() gives such a chart, be it sealed or not? Within a hundredth of a texel,
 // for what a turned or moved instance differs in.
 bool has_size(const ChartSet& charts, const ChartInstance& instance, double texels_per_metre, SizeLimit limit,

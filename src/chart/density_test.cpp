@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <span>
 
 #include "chart/mesh_charts.h"
 #include "support/meshes.h"
@@ -54,6 +56,26 @@ TEST(Density, UnevenTransformsStretchTheChartAlike) {
     const auto instances = chart_instances(f.scene, f.charts);
     EXPECT_NEAR(instances[0].rate_x, 4.0, 1e-6);
     EXPECT_NEAR(instances[0].rate_y, 1.0, 1e-6);
+}
+
+TEST(Density, MasksTakeWhatWasSaidBeforeTheyAreDrawn) {
+    const Fixture f({turned({1, 1, 1}), turned({3, 3, 3}), turned({1, 1, 1})});
+    const auto instances = chart_instances(f.scene, f.charts);
+    Context context(1);
+    const std::vector<std::array<std::uint32_t, 2>> fixed{{0, 0}, {100, 7}, {0, 0}};
+    for (const MaskRule& rule : {MaskRule{}, MaskRule{MaskRule::Filter::bicubic, 2, 4}}) {
+        for (const bool given : {false, true}) {
+            const SizeLimit limit{16384, 16384, rule};
+            const std::span<const std::array<std::uint32_t, 2>> sizes =
+                given ? std::span(fixed) : std::span(fixed).first(0);
+            const auto sized = size_charts(f.charts, instances, 50.0, limit, context, sizes);
+            ASSERT_TRUE(sized);
+            EXPECT_EQ(sized->masks.size(), 2u) << "two instances share one";
+            std::uint64_t bytes = 0;
+            for (const ChartMask& mask : sized->masks) bytes += mask.bits.size() * sizeof(std::uint64_t);
+            EXPECT_EQ(mask_bytes(f.charts, instances, 50.0, limit, sizes), bytes);
+        }
+    }
 }
 
 TEST(Density, SealedChartsGetAQuarter) {

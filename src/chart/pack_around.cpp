@@ -30,7 +30,8 @@ public:
     Packing run(std::uint32_t max_page) && {
         for (std::uint32_t p = 0; p < result_.pages.size(); ++p) fill(p, result_.pages[p].height);
         if (max_page != 0) {
-            for (std::uint32_t p = 0; p < result_.pages.size(); ++p) fill(p, max_page);
+            for (std::uint32_t p = 0; p < result_.pages.size(); ++p)
+                if (result_.pages[p].height < max_page) fill(p, max_page);  // else it was searched just now
             add_pages(max_page);
         }
         while (!result_.pages.empty() && result_.pages.back().used == 0) result_.pages.pop_back();
@@ -50,6 +51,7 @@ private:
             (fits ? tried : left).push_back(i);
             if (fits) mask_of.push_back(items_[i].mask);
         }
+        if (tried.empty()) return;
         FillOptions options;
         options.width = page.width;
         options.height = height;

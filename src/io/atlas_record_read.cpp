@@ -11,7 +11,6 @@
 namespace lumel {
 namespace {
 
-constexpr std::uint64_t kMaxManifest = std::uint64_t{4} << 30;
 constexpr std::uint64_t kLargestPage = 16384;
 constexpr const char* kGiveAManifest = "give the manifest.json of a bake, or the atlas.json of lumel atlas";
 constexpr std::size_t kIdDigits = 16;

@@ -24,6 +24,10 @@ inline Error unsupported(std::string where, std::string message, std::string rem
     return {ErrorCode::unsupported, std::move(message), std::move(where), std::move(remedy)};
 }
 
+// Bytes of a manifest, or of another JSON of ours. It is read whole, and its tree takes a few times as much beside it:
+// those of the largest levels have some ten million bytes.
+inline constexpr std::uint64_t kMaxManifest = std::uint64_t{512} << 20;
+
 // Refuses documents nested or branched so that parsing them would take unbounded time or memory.
 Result<Json> parse_json(std::string_view text, const std::string& where);
 

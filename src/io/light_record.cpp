@@ -13,7 +13,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kMaxManifest = std::uint64_t{4} << 30;
 constexpr std::uint64_t kMaxSkyFile = std::uint64_t{8} << 30;
 
 // Found again from wherever the two are moved to together. On another drive, say, no relative path leads there.

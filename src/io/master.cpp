@@ -20,7 +20,7 @@ constexpr std::size_t kShChannels = 3 * kShCoefficients, kLayerChannels = kShCha
 constexpr std::uint32_t kRowsAtOnce = 64;
 // No light is so bright; what encodings make of it, squares included, stays within float.
 constexpr float kLargest = 1e15f;
-constexpr std::uint64_t kMaxMasterFile = std::uint64_t{64} << 30, kMaxManifest = std::uint64_t{4} << 30;
+constexpr std::uint64_t kMaxMasterFile = std::uint64_t{64} << 30;
 constexpr std::uint64_t kLargestPage = 16384;
 constexpr const char* kGiveABake = "give the output folder of lumel bake; bake again if an older one wrote it";
 

@@ -18,6 +18,8 @@ struct ChartMask {
     ChartMask(std::uint32_t w, std::uint32_t h)
         : width(w), height(h), words_per_row((w + 63) / 64), bits(std::size_t{words_per_row} * h, 0) {}
 
+    static std::uint64_t bytes_of(std::uint32_t w, std::uint32_t h) { return std::uint64_t{(w + 63) / 64} * 8 * h; }
+
     [[nodiscard]] bool get(std::uint32_t x, std::uint32_t y) const {
         return (bits[std::size_t{y} * words_per_row + x / 64] >> (x % 64)) & 1;
     }

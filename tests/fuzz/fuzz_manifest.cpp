@@ -62,10 +62,6 @@ void keep_layout(const lumel::AtlasRecord& record) {
     lumel::ChartOptions options;
     options.max_page = 16384;
     options.previous = &record;
-    // A million times the texels of a page would be drawn.
-    if (record.density > 200.0 || record.pages.size() > 16) return;
-    for (const lumel::AtlasPage& page : record.pages)
-        if (page.width * page.height > 1u << 20) return;
     const auto atlas = lumel::make_atlas(level().scene, level().geometry, level().charts, options, context);
     if (!atlas.ok()) return;
     for (std::size_t p = 0; p < std::min(record.pages.size(), atlas->pages.size()); ++p)
