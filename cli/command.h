@@ -95,7 +95,7 @@ public:
     RunContext& operator=(const RunContext&) = delete;
     [[nodiscard]] Context& get() { return context_; }
     [[nodiscard]] Interrupt& interrupt() { return *interrupt_; }
-    // Ends the progress line, prints warnings.
+    // Ends the progress line, prints warnings; at the latest when this goes, for why a run failed may be among them.
     void finish();
 
 private:
@@ -103,6 +103,7 @@ private:
     Context context_;
     std::unique_ptr<Meter> meter_;
     std::unique_ptr<Interrupt> interrupt_;
+    bool finished_ = false;
 };
 
 }  // namespace lumel::cli

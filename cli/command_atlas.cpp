@@ -26,14 +26,15 @@ void print_summary(const AtlasStatistics& s, const Atlas& atlas, const std::stri
     std::printf("%.2f texels/m on average, L2 stretch %.4f\n", s.mean_density, s.stretch);
 }
 
-Status run_in(const Options& options, RunContext& run) {
-    Context& context = run.get();
+Status run(const Options& options) {
+    RunContext run_context(options.threads, options.progress);
+    Context& context = run_context.get();
     BakeOptions bake_options;
     LUMEL_TRY_STATUS(options.texels.read(bake_options));
     const ChartOptions chart = chart_options(bake_options);
     LUMEL_TRY(const LoadedScene loaded, load_scene(options.scene, context));
     LUMEL_TRY(AtlasWriter writer, AtlasWriter::create(options.output));
-    run.interrupt().set_cleaner(writer.cleaner());
+    run_context.interrupt().set_cleaner(writer.cleaner());
     const Scene& scene = loaded.scene;
     LUMEL_TRY(const WorldGeometry geometry, flatten(scene, context));
     LUMEL_TRY(const ChartSet charts, make_charts(scene, geometry, chart, context));
@@ -42,9 +43,9 @@ Status run_in(const Options& options, RunContext& run) {
         return Error{ErrorCode::invalid_input, "no surface of the scene gets lightmap texels", scene.source,
                      "lumel info lists the class of every node"};
     LUMEL_TRY(const AtlasStatistics statistics, writer.write(scene, geometry, charts, atlas, context));
-    if (!run.interrupt().begin_commit()) return cancelled_error();
+    if (!run_context.interrupt().begin_commit()) return cancelled_error();
     LUMEL_TRY_STATUS(writer.commit());
-    run.finish();
+    run_context.finish();
     print_summary(statistics, atlas, options.output);
     if (bake_options.atlas) print_kept(atlas.kept, atlas.placements.size(), *bake_options.atlas);
     return success();
@@ -62,8 +63,7 @@ Run add_atlas(CLI::App& app) {
     app.add_option("--threads", options->threads, "0: one per core")->check(CLI::Range(0u, 1024u));
     declare_progress(app, options->progress);
     return [options] {
-        RunContext context(options->threads, options->progress);
-        const Status status = run_in(*options, context);
+        const Status status = run(*options);
         return status.ok() ? static_cast<int>(kDone) : fail(status.error(), "atlas");
     };
 }

@@ -17,6 +17,7 @@
 #include "io/bake_writer.h"
 #include "io/baked.h"
 #include "io/page_files.h"
+#include "io/partial_folder.h"
 #include "load.h"
 #include "path/path_integrator.h"
 #include "render/picture.h"
@@ -158,21 +159,13 @@ void print_summary(const BakeReport& report, const std::string& folder) {
     std::printf("peak memory %llu MB\n", static_cast<unsigned long long>(report.peak_memory_bytes >> 20));
 }
 
-// While other threads still write into it.
-void remove_folder(const std::filesystem::path& folder) {
-    constexpr int kAttempts = 20;
-    std::error_code error;
-    for (int attempt = 0; attempt < kAttempts && std::filesystem::exists(folder, error); ++attempt)
-        std::filesystem::remove_all(folder, error);
-}
-
 Status run(const Options& options) {
     LUMEL_TRY(BakeOptions bake_options, read_options(options));
     RunContext run_context(bake_options.threads, options.progress);
     Context& context = run_context.get();
     LUMEL_TRY(const LoadedScene loaded, load_lit_scene(options.scene, bake_options, context));
     LUMEL_TRY(BakeWriter writer, BakeWriter::create(options.output, loaded, bake_options, context));
-    run_context.interrupt().set_cleaner([folder = writer.folder()] { remove_folder(folder); });
+    run_context.interrupt().set_cleaner([folder = writer.folder()] { remove_while_written(folder); });
     BakeSink sink;
     std::uint64_t kept = 0;
     sink.layout = [&](const WorldGeometry& geometry, const ChartSet& charts, const Atlas& atlas) {

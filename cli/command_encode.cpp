@@ -162,9 +162,10 @@ Status print_measured(const Options& options, const BlockSample& sample, Context
     return options.plot.empty() ? success() : write_table_plot(options.plot, rows);
 }
 
-Status run_in(const Options& options, RunContext& run) {
+Status run(const Options& options) {
     LUMEL_TRY_STATUS(check_usage(options));
-    Context& context = run.get();
+    RunContext run_context(options.threads, options.progress);
+    Context& context = run_context.get();
     Choice choice;
     if (!options.encoding.empty() && options.encoding != kAutomatic) {
         LUMEL_TRY(choice, named_choice(options));
@@ -180,14 +181,7 @@ Status run_in(const Options& options, RunContext& run) {
     }
     choice.target.quality = quality_of(options);
     choice.target.layers = layers_of(*choice.target.format, masters);
-    return write_pages(options, choice, masters, layers, record, run);
-}
-
-Status run(const Options& options) {
-    RunContext context(options.threads, options.progress);
-    Status status = run_in(options, context);
-    context.finish();
-    return status;
+    return write_pages(options, choice, masters, layers, record, run_context);
 }
 
 template <class Rows>

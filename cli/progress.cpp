@@ -121,9 +121,11 @@ RunContext::RunContext(unsigned threads, const std::string& progress_style)
     interrupt_ = std::make_unique<Interrupt>(context_);
 }
 
-RunContext::~RunContext() { meter_->end_line(); }
+RunContext::~RunContext() { finish(); }
 
 void RunContext::finish() {
+    if (finished_) return;
+    finished_ = true;
     meter_->end_line();
     for (const Diagnostic& item : context_.diagnostics.all()) {
         std::fprintf(stderr, "lumel: warning: %s [%s, %llu]", item.message.c_str(), item.code.c_str(),

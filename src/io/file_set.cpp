@@ -44,10 +44,14 @@ Result<FileSet> FileSet::create(const fs::path& folder, const FileSetKind& kind)
         LUMEL_TRY_STATUS(check_not_foreign(group, folder));
     }
     remove_stale_partials(folder, kHidden);
-    LUMEL_TRY(PartialFolder partial, PartialFolder::create(folder, kHidden + kind.stem, [&](const std::string& number) {
-                  return group.is_number_taken(number);
-              }));
-    return FileSet(group, is_new, std::move(partial));
+    Result<PartialFolder> partial = PartialFolder::create(
+        folder, kHidden + kind.stem, [&](const std::string& number) { return group.is_number_taken(number); });
+    if (!partial.ok()) {
+        Error known = partial.error();
+        known.where = folder.string();  // not a name that the user has never seen
+        return known;
+    }
+    return FileSet(group, is_new, std::move(*partial));
 }
 
 FileSet::~FileSet() {
@@ -59,8 +63,8 @@ FileSet::~FileSet() {
 
 std::function<void()> FileSet::cleaner() const {
     return [partial = partial(), folder = group_.folder, is_new = is_new_] {
+        remove_while_written(partial);
         std::error_code ignored;
-        fs::remove_all(partial, ignored);
         if (is_new) fs::remove(folder, ignored);
     };
 }

@@ -74,10 +74,14 @@ Result<OutputFolder> OutputFolder::create(const fs::path& target) {
     const std::string name = real.filename().string();
     remove_stale_partials(real.parent_path(), name + std::string(kPartial));
     const FileGroup bake = bake_in(real);
-    LUMEL_TRY(PartialFolder partial, PartialFolder::create(real.parent_path(), name, [&](const std::string& number) {
-                  return bake.is_number_taken(number);
-              }));
-    return OutputFolder(real, std::move(partial));
+    Result<PartialFolder> partial = PartialFolder::create(
+        real.parent_path(), name, [&](const std::string& number) { return bake.is_number_taken(number); });
+    if (!partial.ok()) {
+        Error known = partial.error();
+        known.where = target.string();  // not a name that the user has never seen
+        return known;
+    }
+    return OutputFolder(real, std::move(*partial));
 }
 
 Status OutputFolder::commit() {

@@ -65,6 +65,12 @@ Result<PartialFolder> PartialFolder::create(const fs::path& folder, const std::s
     }
 }
 
+void remove_while_written(const fs::path& folder) noexcept {
+    constexpr int kAttempts = 20;
+    std::error_code error;
+    for (int attempt = 0; attempt < kAttempts && fs::exists(folder, error); ++attempt) fs::remove_all(folder, error);
+}
+
 void remove_stale_partials(const fs::path& folder, std::string_view prefix) {
     std::error_code ignored;
     std::vector<fs::path> partials;

@@ -41,6 +41,9 @@ private:
     FolderLock lock_;
 };
 
+// While other threads may still write into it.
+void remove_while_written(const std::filesystem::path& folder) noexcept;
+
 // Removes what killed processes were writing: of the folders in `folder` whose name begins with `prefix` and ends with
 // ".partial-<number>" those that nobody has locked. Where the file system knows no locks they stay.
 void remove_stale_partials(const std::filesystem::path& folder, std::string_view prefix);

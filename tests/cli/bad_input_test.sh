@@ -212,6 +212,14 @@ expect 1 web/manifest.json bake ok.gltf -o web "${quick[@]}"
 [ "$(ls web)" = manifest.json ] || complain "web/ holds $(ls web)"
 [ "$(cat out/* | cksum)" = "$before" ] || complain 'a failed bake changed the older output'
 
+# What was questionable in a scene may be why a run failed: warnings come before the error, too.
+sed 's/"meshes":/"materials":[{"extensions":{"KHR_materials_diffuse_transmission":{"diffuseTransmissionFactor":1}}}],&/
+    s/"indices":1}/"indices":1,"material":0}/' ok.gltf >warned.gltf
+sed 's/"mesh":0/"mesh":0,"extras":{"lightmap":false}/' warned.gltf >untextured.gltf
+expect 1 'warning: ' atlas untextured.gltf -o warned --preset preview
+expect 1 'warning: ' bake untextured.gltf -o warned "${quick[@]}"
+expect 2 'warning: ' render warned.gltf -o warned.png --camera nowhere
+
 # Pictures show the layers that the bake sums. Here all light is direct.
 for include in direct sky indirect; do
     expect 0 '' render ok.gltf -o $include.pfm --include $include --samples 4 --resolution 32x32
