@@ -94,10 +94,4 @@ double bytes_per_texel(std::span<const StoredTexture> layout) {
     return sum;
 }
 
-std::size_t layout_bytes(std::span<const StoredTexture> layout, std::uint32_t width, std::uint32_t height) {
-    std::size_t sum = 0;
-    for (const StoredTexture& texture : layout) sum += texel_bytes(texture.format, width, height);
-    return sum;
-}
-
 }  // namespace lumel

@@ -40,7 +40,5 @@ struct StoredTexture {
 std::vector<StoredTexture> texture_layout(const Encoding& encoding, const TextureStorage& storage);
 
 double bytes_per_texel(std::span<const StoredTexture> layout);
-// Of all textures of a page, uncompressed by Zstandard and without headers.
-std::size_t layout_bytes(std::span<const StoredTexture> layout, std::uint32_t width, std::uint32_t height);
 
 }  // namespace lumel

@@ -35,7 +35,6 @@ namespace detail {
 // Little-endian numbers, one after the other.
 class FileBytes {
 public:
-    void u16(std::uint32_t v) { put(v, 2); }
     void u32(std::uint64_t v) { put(v, 4); }
     void u64(std::uint64_t v) { put(v, 8); }
     void bytes(const void* data, std::size_t size) {
