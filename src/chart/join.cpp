@@ -144,9 +144,13 @@ private:
         };
         const auto some = cuts_beyond([&](std::uint32_t run) { return gaps[run].distance <= most; });
         std::optional<FlatChart> joined = join(a, b, some, motion, cancelled);
-        if (!joined && budget_ > 0.0) {
+        // Only a run of its size closes a ring; what is tried for crumbs beside it is mostly in vain.
+        double beside = 0.0;
+        for (std::uint32_t run = 0; run < gaps.size(); ++run)
+            if (run != longest && gaps[run].distance <= most) beside = std::max(beside, gaps[run].length);
+        if (!joined && budget_ > 0.0 && beside >= 0.5 * gaps[longest].length) {
             const auto all = cuts_beyond([&](std::uint32_t run) { return run == longest; });
-            if (all.size() > some.size()) joined = join(a, b, all, motion, cancelled);
+            joined = join(a, b, all, motion, cancelled);
         }
         if (joined) replace(a, b, std::move(*joined));
     }
