@@ -55,8 +55,6 @@ public:
     // What choose() would have stated for that light.
     [[nodiscard]] std::uint32_t units_of(const Receiver& receiver, std::uint32_t light) const;
 
-    [[nodiscard]] std::size_t node_count() const { return nodes_.size(); }
-
     // A part of the tree, of which others say how often it is chosen.
     struct Subtree {
         std::uint32_t node = 0;        // its root
