@@ -27,7 +27,7 @@ namespace {
 
 struct Options {
     std::string scene, output, max_memory, progress;
-    std::string integrator = "auto", guide = "auto", stop, denoise = "auto";
+    std::string integrator = "auto", guide = "auto", stop, denoise = "auto", seams = "on";
     std::uint32_t views = 2, view_samples = 32;
     std::optional<double> error, confidence, time;
     BakeOptions values;
@@ -47,6 +47,7 @@ Result<BakeOptions> read_options(const Options& options) {
         LUMEL_TRY(out.max_memory_bytes, parse_bytes(options.max_memory, "--max-memory"));
     }
     if (options.denoise != "auto") out.denoise = options.denoise == "on";
+    out.seams = options.seams == "on";
     // An error to reach is asked for by its name alone.
     const std::string stop = !options.stop.empty() ? options.stop : options.error ? "error" : "fixed";
     if (stop == "fixed" && (options.error || options.confidence))
@@ -214,6 +215,9 @@ Run add_bake(CLI::App& app) {
         ->group(texels);
     app.add_option("--dilate", values.dilate, "Rings of texels filled around charts")
         ->check(CLI::Range(0u, 64u))
+        ->group(texels);
+    app.add_option("--seams", options->seams, "on or off: both sides of a seam show the same light")
+        ->check(CLI::IsMember({"on", "off"}))
         ->group(texels);
 
     const std::string transport = "Transport";

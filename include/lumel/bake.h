@@ -56,6 +56,9 @@ struct BakeReport {
     // of their irradiance (luminance). NaN where nothing was to be reached.
     double share_within_error = 0.0;
     double mean_irradiance[3] = {0, 0, 0};  // I = E/pi over baked texels
+    // Where charts meet on one surface; 0 with options.seams off. Hidden: something stands there.
+    double seam_metres = 0.0;
+    std::uint64_t seam_samples = 0, hidden_seam_samples = 0;
     double texels_per_metre = 0.0;        // reached, mean over the area; below what was asked where charts were clamped
     double least_texels_per_metre = 0.0;  // of any chart that was not asked for less
     std::uint64_t peak_memory_bytes = 0;  // of the process so far, when this was last looked at

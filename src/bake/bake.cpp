@@ -30,6 +30,7 @@
 #include "post/fit_lookup.h"
 #include "post/lightmap.h"
 #include "scene/world_geometry.h"
+#include "seam/blend_seams.h"
 #include "texel/texel_buffer.h"
 #include "trace/tracer.h"
 
@@ -172,6 +173,7 @@ struct PageBaker {
     const PathOptions& path;
     BakeReport& report;
     CellBias& bias;
+    SeamBlender* seams;  // none: seams stay as they are
     Context& context;
 
     // The texel buffer lives no longer than this.
@@ -210,6 +212,10 @@ struct PageBaker {
         LUMEL_TRY(Lightmap map,
                   finish_page(texels, std::move(sums), std::move(surface), readers, options.dilate, context));
         if (smooth) LUMEL_TRY_STATUS(fit_to_lookup(texels, {}, map, context));
+        if (seams) {
+            const StageTimer seam_timer(report, "seams");
+            LUMEL_TRY_STATUS(seams->blend(map, context));
+        }
         report.pages.push_back(page_report(map, texels));
         return map;
     }
@@ -232,6 +238,22 @@ Status bake_pages(const PageBaker& baker, const BakeSink& sink, Totals& totals) 
         if (sink.page) LUMEL_TRY_STATUS(sink.page(map));
     }
     return success();
+}
+
+// Where the scene's seams are, and what blends them.
+Result<SeamBlender> make_seam_blender(const ChartSet& charts, const Atlas& atlas, const Transport& transport,
+                                      BakeReport& report, Context& context) {
+    const StageTimer timer(report, "seams");
+    const SeamRule rule;
+    const SeamOptions options;
+    const std::vector<BorderEdge> edges = find_border_edges(transport.scene, transport.geometry, charts, atlas);
+    LUMEL_TRY(const std::vector<Seam> seams, find_seams(edges, rule, context));
+    LUMEL_TRY(SeamSamples samples,
+              make_seam_samples(edges, seams, rule, options.samples_per_texel, transport.tracer, context));
+    report.seam_metres = samples.metres;
+    report.seam_samples = samples.samples.size();
+    report.hidden_seam_samples = samples.hidden;
+    return SeamBlender(std::move(samples.samples), atlas, options);
 }
 
 // For options.time_seconds by the clock of the bake: page 0 is rasterised for the trial, and again when its turn has
@@ -338,7 +360,14 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
     Totals totals;
     if (options.stop != StopRule::fixed) totals.relative_error = path.relative_error_of_mean;
     CellBias bias;
-    LUMEL_TRY_STATUS(bake_pages({scene, charts, atlas, transport, options, path, report, bias, context}, sink, totals));
+    std::optional<SeamBlender> seams;
+    if (options.seams) {
+        LUMEL_TRY(seams, make_seam_blender(charts, atlas, transport, report, context));
+    }
+    const PageBaker baker{scene,  charts, atlas, transport,                 options, path,
+                          report, bias,   seams ? &*seams : nullptr, context};
+    LUMEL_TRY_STATUS(bake_pages(baker, sink, totals));
+    seams.reset();
     report.cell_bias = bias.relative();
     report.cell_bias_error = bias.standard_error();
     for (const PageReport& page : report.pages) {

@@ -157,6 +157,7 @@ Json options_json(const ManifestInput& in) {
             {"uv1", kUv1[static_cast<std::size_t>(options.uv1)]},
             {"denoise", is_denoised(options)},
             {"dilate", options.dilate},
+            {"seams", options.seams},
             {"two_sided", options.two_sided},
             {"ao_distance", options.ao_distance},
             {"integrator", kIntegrators[static_cast<std::size_t>(options.integrator)]},
@@ -202,6 +203,9 @@ Json report_json(const ManifestInput& in, const Diagnostics& diagnostics) {
     out["estimated_nrmse"] = number(report.estimated_nrmse);
     out["cell_bias"] = number(report.cell_bias);
     out["cell_bias_error"] = number(report.cell_bias_error);
+    out["seams"] = {{"metres", number(report.seam_metres)},
+                    {"samples", report.seam_samples},
+                    {"hidden_samples", report.hidden_seam_samples}};
     out["share_within_error"] = number(report.share_within_error);
     out["mean_irradiance"] = report.mean_irradiance;
     out["warnings"] = warnings_json(diagnostics);
