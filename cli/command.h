@@ -27,6 +27,7 @@ Run add_render(CLI::App& app);
 Run add_compare(CLI::App& app);
 Run add_pack(CLI::App& app);
 Run add_encode(CLI::App& app);
+Run add_check(CLI::App& app);
 
 // Values that several commands parse -------------------------------------------------------------------------------
 

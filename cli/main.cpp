@@ -72,6 +72,7 @@ int main(int argc, char** argv) {
     add("compare", "How far two images are apart", add_compare);
     add("pack", "Pack raw chart masks into an atlas", add_pack);
     add("encode", "A bake's light in another encoding, or the error of all of them", add_encode);
+    add("check", "Is a bake fit to ship: seams, bad texels, layout; exit code 1 above thresholds", add_check);
 
     try {
         app.parse(argc, argv);

@@ -1,0 +1,229 @@
+#include "check/seam_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "base/cancelled.h"
+#include "base/parallel.h"
+#include "check/lookup.h"
+
+namespace lumel {
+namespace {
+
+struct Border {
+    std::uint32_t triangle, corner;
+};
+
+// Edges that no second triangle has at the same place of the same page.
+std::vector<Border> borders_of(const CheckedBake& bake) {
+    struct Edge {
+        std::uint32_t page, triangle, corner;
+        Vec2 low, high;
+        [[nodiscard]] auto key() const { return std::tuple(page, low.x, low.y, high.x, high.y); }
+    };
+    std::vector<Edge> edges;
+    edges.reserve(3 * bake.triangles.size());
+    for (std::uint32_t t = 0; t < bake.triangles.size(); ++t)
+        for (std::uint32_t k = 0; k < 3; ++k) {
+            const CheckedTriangle& triangle = bake.triangles[t];
+            Vec2 a = triangle.uv[k], b = triangle.uv[(k + 1) % 3];
+            if (std::tuple(b.x, b.y) < std::tuple(a.x, a.y)) std::swap(a, b);
+            edges.push_back({triangle.page, t, k, a, b});
+        }
+    std::ranges::sort(edges, [](const Edge& a, const Edge& b) {
+        return std::tuple(a.key(), a.triangle, a.corner) < std::tuple(b.key(), b.triangle, b.corner);
+    });
+    std::vector<Border> out;
+    for (std::size_t i = 0, end = 0; i < edges.size(); i = end) {
+        while (end < edges.size() && edges[end].key() == edges[i].key()) ++end;
+        if (end == i + 1) out.push_back({edges[i].triangle, edges[i].corner});
+    }
+    return out;
+}
+
+// Borders by the cells of a grid that they pass through.
+class BorderGrid {
+public:
+    BorderGrid(const CheckedBake& bake, const std::vector<Border>& borders, double distance)
+        : bake_(bake), borders_(borders), distance_(distance) {
+        double sum = 0.0;
+        for (const Border& border : borders) sum += static_cast<double>(length(to(border) - from(border)));
+        cell_ = std::max(8.0 * distance, sum / static_cast<double>(std::max<std::size_t>(1, borders.size())));
+        for (std::uint32_t b = 0; b < borders.size(); ++b) insert(b);
+        std::ranges::sort(entries_);
+        const auto duplicates = std::ranges::unique(entries_);
+        entries_.erase(duplicates.begin(), duplicates.end());
+    }
+
+    [[nodiscard]] Vec3 from(const Border& b) const { return bake_.triangles[b.triangle].position[b.corner]; }
+    [[nodiscard]] Vec3 to(const Border& b) const { return bake_.triangles[b.triangle].position[(b.corner + 1) % 3]; }
+
+    template <class Visit>
+    void for_each_in_cell(Vec3 p, Visit&& visit) const {
+        const Cell cell = cell_of(p, 0.0);
+        for (auto it = std::ranges::lower_bound(entries_, std::pair(cell, 0u)); it != entries_.end() && it->first == cell;
+             ++it)
+            visit(it->second);
+    }
+
+private:
+    using Cell = std::array<std::int64_t, 3>;
+
+    [[nodiscard]] Cell cell_of(Vec3 p, double shift) const {
+        Cell cell;
+        for (std::size_t k = 0; k < 3; ++k)
+            cell[k] = static_cast<std::int64_t>(std::floor((double{p[k]} + shift) / cell_));
+        return cell;
+    }
+    // Steps of half a cell, each with all cells within what lies between two steps and the distance.
+    void insert(std::uint32_t b) {
+        const Vec3 start = from(borders_[b]), way = to(borders_[b]) - start;
+        const auto steps = static_cast<std::uint32_t>(2.0 * static_cast<double>(length(way)) / cell_) + 1;
+        const double reach = 0.25 * cell_ + distance_;
+        for (std::uint32_t s = 0; s <= steps; ++s) {
+            const Vec3 p = start + way * (static_cast<float>(s) / static_cast<float>(steps));
+            const Cell low = cell_of(p, -reach), high = cell_of(p, reach);
+            for (std::int64_t x = low[0]; x <= high[0]; ++x)
+                for (std::int64_t y = low[1]; y <= high[1]; ++y)
+                    for (std::int64_t z = low[2]; z <= high[2]; ++z) entries_.emplace_back(Cell{x, y, z}, b);
+        }
+    }
+
+    const CheckedBake& bake_;
+    const std::vector<Border>& borders_;
+    double distance_, cell_ = 1.0;
+    std::vector<std::pair<Cell, std::uint32_t>> entries_;
+};
+
+// A point of a border: where it is and what the runtime shows there.
+struct Point {
+    Vec3 position, normal;
+    Vec2 texels;
+};
+
+struct Sample {
+    SeamDefect defect;
+    double metres = 0.0;
+};
+
+class SeamSearch {
+public:
+    SeamSearch(const CheckedBake& bake, const SeamCheckOptions& options)
+        : bake_(bake), options_(options), borders_(borders_of(bake)), grid_(bake, borders_, options.distance),
+          mean_(mean_light(bake)) {}
+
+    [[nodiscard]] std::size_t size() const { return borders_.size(); }
+
+    void walk(std::size_t index, std::vector<Sample>& out) const {
+        const Border& border = borders_[index];
+        const Point first = at(border, 0.0f), last = at(border, 1.0f);
+        const double texels = static_cast<double>(length(last.texels - first.texels));
+        const double metres = static_cast<double>(length(last.position - first.position));
+        if (!(metres > 0.0)) return;
+        const auto n = static_cast<std::uint32_t>(std::max(1.0, std::ceil(texels * options_.points_per_texel)));
+        for (std::uint32_t k = 0; k < n; ++k) {
+            const Point point = at(border, (static_cast<float>(k) + 0.5f) / static_cast<float>(n));
+            grid_.for_each_in_cell(point.position, [&](std::uint32_t other) {
+                if (borders_[other].triangle == border.triangle) return;
+                compare(border, point, borders_[other], texels / metres, metres / n, out);
+            });
+        }
+    }
+
+private:
+    [[nodiscard]] Point at(const Border& border, float t) const {
+        const CheckedTriangle& triangle = bake_.triangles[border.triangle];
+        const std::uint32_t k = border.corner, next = (k + 1) % 3;
+        const Vec2 a = bake_.texels(triangle, k), b = bake_.texels(triangle, next);
+        return {triangle.position[k] + (triangle.position[next] - triangle.position[k]) * t,
+                normalize_or(triangle.normal[k] * (1.0f - t) + triangle.normal[next] * t, triangle.normal[k]),
+                a + (b - a) * t};
+    }
+
+    [[nodiscard]] Point nearest(const Border& border, Vec3 p) const {
+        const Vec3 from = grid_.from(border), way = grid_.to(border) - from;
+        const float squared = dot(way, way);
+        return at(border, squared > 0.0f ? std::clamp(dot(p - from, way) / squared, 0.0f, 1.0f) : 0.0f);
+    }
+
+    void compare(const Border& border, const Point& a, const Border& other, double texels_per_metre, double metres,
+                 std::vector<Sample>& out) const {
+        const Point b = nearest(other, a.position);
+        if (static_cast<double>(length(a.position - b.position)) > options_.distance) return;
+        if (static_cast<double>(dot(a.normal, b.normal)) < options_.normal_cosine) return;
+        const CheckedTriangle &ta = bake_.triangles[border.triangle], &tb = bake_.triangles[other.triangle];
+        // Around a corner of one border lies the same place of the layout.
+        const double same = 0.02 + 2.0 * options_.distance * texels_per_metre;
+        if (ta.page == tb.page && static_cast<double>(length(a.texels - b.texels)) <= same) return;
+        const double light_a = luminance_at(bake_.pages[ta.page], a.texels);
+        const double light_b = luminance_at(bake_.pages[tb.page], b.texels);
+        const double scale = 0.5 * (light_a + light_b) + 0.01 * mean_;
+        const double contrast = scale > 0.0 ? std::fabs(light_a - light_b) / scale : 0.0;
+        if (!std::isfinite(contrast)) return;  // another check's
+        out.push_back({{contrast, a.position, ta.instance, tb.instance, ta.page, a.texels}, metres});
+    }
+
+    const CheckedBake& bake_;
+    SeamCheckOptions options_;
+    std::vector<Border> borders_;
+    BorderGrid grid_;
+    double mean_;
+};
+
+double quantile(std::vector<double>& values, double share) {
+    if (values.empty()) return 0.0;
+    const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), values.begin() + at, values.end());
+    return values[static_cast<std::size_t>(at)];
+}
+
+// The worst first, none within a hundredth of the scene of one that is told already.
+std::vector<SeamDefect> worst_of(std::vector<Sample> samples, double visible) {
+    constexpr std::size_t kMost = 100;
+    Vec3 low{1e30f, 1e30f, 1e30f}, high{-1e30f, -1e30f, -1e30f};
+    for (const Sample& s : samples) low = min(low, s.defect.position), high = max(high, s.defect.position);
+    const float apart = samples.empty() ? 0.0f : 0.01f * length(high - low);
+    std::erase_if(samples, [visible](const Sample& s) { return s.defect.contrast <= visible; });
+    std::ranges::stable_sort(samples, [](const Sample& a, const Sample& b) { return a.defect.contrast > b.defect.contrast; });
+    std::vector<SeamDefect> out;
+    for (const Sample& s : samples) {
+        if (out.size() == kMost) break;
+        const auto is_near = [&](const SeamDefect& d) { return length(d.position - s.defect.position) < apart; };
+        if (std::ranges::none_of(out, is_near)) out.push_back(s.defect);
+    }
+    return out;
+}
+
+}  // namespace
+
+Result<SeamCheck> check_seams(const CheckedBake& bake, const SeamCheckOptions& options, Context& context) {
+    constexpr std::size_t kBordersPerChunk = 1024;
+    const SeamSearch search(bake, options);
+    std::vector<std::vector<Sample>> parts((search.size() + kBordersPerChunk - 1) / kBordersPerChunk);
+    const bool done = parallel_for(
+        context, search.size(), kBordersPerChunk,
+        [&](const ChunkRange& range) {
+            for (std::size_t i = range.begin; i < range.end; ++i) search.walk(i, parts[range.index]);
+        },
+        "seams");
+    if (!done) return cancelled_error();
+    std::vector<Sample> samples;
+    for (const std::vector<Sample>& part : parts) samples.insert(samples.end(), part.begin(), part.end());
+    SeamCheck out;
+    out.samples = samples.size();
+    std::vector<double> contrasts;
+    contrasts.reserve(samples.size());
+    for (const Sample& s : samples) {
+        contrasts.push_back(s.defect.contrast);
+        out.metres += 0.5 * s.metres;
+        if (s.defect.contrast > options.visible) out.visible_metres += 0.5 * s.metres;
+        out.largest = std::max(out.largest, s.defect.contrast);
+    }
+    out.median = quantile(contrasts, 0.5);
+    out.p99 = quantile(contrasts, 0.99);
+    out.worst = worst_of(std::move(samples), options.visible);
+    return out;
+}
+
+}  // namespace lumel

@@ -1,0 +1,42 @@
+// How far the two sides of seams are apart to the eye, by a search of its own: knows nothing of charts, of how seams
+// were found, or of whether they were blended.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "check/checked_bake.h"
+#include "lumel/context.h"
+#include "lumel/result.h"
+
+namespace lumel {
+
+struct SeamCheckOptions {
+    double distance = 1e-3;            // metres between two points of borders that are taken for one
+    double normal_cosine = 0.9396926;  // 20 degrees
+    double points_per_texel = 2.0;     // along borders
+    double visible = 0.01;             // contrast from which the eye sees a seam
+};
+
+// A place where two lookups disagree.
+struct SeamDefect {
+    double contrast = 0.0;
+    Vec3 position{};
+    std::uint32_t instance_a = 0, instance_b = 0, page = 0;
+    Vec2 texels{};  // of side a on `page`
+};
+
+struct SeamCheck {
+    std::uint64_t samples = 0;
+    double metres = 0.0;          // of seams: half of what the samples stand for, since each is found from both sides
+    double visible_metres = 0.0;  // of these, above SeamCheckOptions::visible
+    double median = 0.0, p99 = 0.0, largest = 0.0;  // of contrast over the samples
+    std::vector<SeamDefect> worst;                  // at most 100 above `visible`, far apart from each other
+};
+
+// Contrast: |a - b| / ((a + b)/2 + 0.01 mean light), of luminances by bilinear lookup. Sampled are edges that one
+// triangle alone has at its place of the layout; partners are all such edges within the distance whose normals agree and
+// which look up another place. Stage "seams". Error: cancelled.
+Result<SeamCheck> check_seams(const CheckedBake& bake, const SeamCheckOptions& options, Context& context);
+
+}  // namespace lumel
