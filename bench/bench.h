@@ -15,6 +15,7 @@ void add_pack(CLI::App& app);       // chart masks: texels used, time
 void add_encodings(CLI::App& app);  // error of encodings over normals
 void add_leaks(CLI::App& app);      // light on the wrong side of walls
 void add_bc(CLI::App& app);         // block compression
+void add_seams(CLI::App& app);      // contrast along seams, before and after
 
 // CPU time of the process, all threads together: the machine's other work does not count.
 class CpuStopwatch {

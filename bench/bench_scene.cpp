@@ -35,6 +35,8 @@ BakeOptions light_of_the_benchmarks() {
     return light;
 }
 
+}  // namespace
+
 Scene load_lit(const std::string& path, Context& context) {
     LoadedScene loaded = need(load_scene(path, context));
     Scene& scene = loaded.scene;
@@ -48,8 +50,6 @@ Scene load_lit(const std::string& path, Context& context) {
     }
     return std::move(scene);
 }
-
-}  // namespace
 
 BenchScene::BenchScene(const std::string& path, const ChartOptions& options, Context& context)
     : BenchScene(base_name(path), load_lit(path, context), options, context) {}

@@ -16,6 +16,7 @@ int main(int argc, char** argv) {
     lumel::bench::add_encodings(app);
     lumel::bench::add_leaks(app);
     lumel::bench::add_bc(app);
+    lumel::bench::add_seams(app);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

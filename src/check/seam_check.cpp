@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+#include <cstdio>
+#include <cstdlib>
 
 #include "base/cancelled.h"
 #include "base/parallel.h"
@@ -98,14 +100,33 @@ private:
 
 // A point of a border: where it is and what the runtime shows there.
 struct Point {
-    Vec3 position, normal;
+    Vec3 position, normal, inward;  // inward: unit, off the border into its triangle
     Vec2 texels;
 };
 
 struct Sample {
     SeamDefect defect;
     double metres = 0.0;
+    bool parted = false;
 };
+
+// What a chunk of borders finds. Rays beside the samples.
+struct Found {
+    std::vector<Sample> samples;
+    std::vector<Ray> rays;
+};
+
+// From beside and above one side of a seam to the other. Without length, which meets nothing, where both are on one
+// side of the line.
+Ray ray_between(const Point& a, const Point& b, float reach) {
+    const Vec3 lift = normalize_or(a.normal + b.normal, a.normal) * reach;
+    const Vec3 from = a.position + a.inward * reach + lift, way = b.position + b.inward * reach + lift - from;
+    Ray ray;
+    ray.origin = from;
+    ray.direction = normalize_or(way, {0, 1, 0});
+    ray.tmax = length(way) < 0.1f * reach ? 0.0f : length(way);
+    return ray;
+}
 
 class SeamSearch {
 public:
@@ -115,7 +136,7 @@ public:
 
     [[nodiscard]] std::size_t size() const { return borders_.size(); }
 
-    void walk(std::size_t index, std::vector<Sample>& out) const {
+    void walk(std::size_t index, Found& out) const {
         const Border& border = borders_[index];
         const Point first = at(border, 0.0f), last = at(border, 1.0f);
         const double texels = static_cast<double>(length(last.texels - first.texels));
@@ -126,7 +147,7 @@ public:
             const Point point = at(border, (static_cast<float>(k) + 0.5f) / static_cast<float>(n));
             grid_.for_each_in_cell(point.position, [&](std::uint32_t other) {
                 if (borders_[other].triangle == border.triangle) return;
-                compare(border, point, borders_[other], texels / metres, metres / n, out);
+                compare(border, point, borders_[other], texels, metres, metres / n, out);
             });
         }
     }
@@ -136,9 +157,11 @@ private:
         const CheckedTriangle& triangle = bake_.triangles[border.triangle];
         const std::uint32_t k = border.corner, next = (k + 1) % 3;
         const Vec2 a = bake_.texels(triangle, k), b = bake_.texels(triangle, next);
+        const Vec3 along = normalize_or(triangle.position[next] - triangle.position[k], {});
+        const Vec3 across = triangle.position[(k + 2) % 3] - triangle.position[k];
         return {triangle.position[k] + (triangle.position[next] - triangle.position[k]) * t,
                 normalize_or(triangle.normal[k] * (1.0f - t) + triangle.normal[next] * t, triangle.normal[k]),
-                a + (b - a) * t};
+                normalize_or(across - along * dot(across, along), {}), a + (b - a) * t};
     }
 
     [[nodiscard]] Point nearest(const Border& border, Vec3 p) const {
@@ -147,21 +170,23 @@ private:
         return at(border, squared > 0.0f ? std::clamp(dot(p - from, way) / squared, 0.0f, 1.0f) : 0.0f);
     }
 
-    void compare(const Border& border, const Point& a, const Border& other, double texels_per_metre, double metres,
-                 std::vector<Sample>& out) const {
+    // `texels`, `length_of_border`: of the border that a lies on.
+    void compare(const Border& border, const Point& a, const Border& other, double texels, double length_of_border,
+                 double metres, Found& out) const {
         const Point b = nearest(other, a.position);
         if (static_cast<double>(length(a.position - b.position)) > options_.distance) return;
         if (static_cast<double>(dot(a.normal, b.normal)) < options_.normal_cosine) return;
         const CheckedTriangle &ta = bake_.triangles[border.triangle], &tb = bake_.triangles[other.triangle];
         // Around a corner of one border lies the same place of the layout.
-        const double same = 0.02 + 2.0 * options_.distance * texels_per_metre;
+        const double same = 0.02 + 2.0 * options_.distance * texels / length_of_border;
         if (ta.page == tb.page && static_cast<double>(length(a.texels - b.texels)) <= same) return;
         const double light_a = luminance_at(bake_.pages[ta.page], a.texels);
         const double light_b = luminance_at(bake_.pages[tb.page], b.texels);
         const double scale = 0.5 * (light_a + light_b) + 0.01 * mean_;
         const double contrast = scale > 0.0 ? std::fabs(light_a - light_b) / scale : 0.0;
         if (!std::isfinite(contrast)) return;  // another check's
-        out.push_back({{contrast, a.position, ta.instance, tb.instance, ta.page, a.texels}, metres});
+        out.samples.push_back({{contrast, a.position, ta.instance, tb.instance, ta.page, a.texels}, metres});
+        out.rays.push_back(ray_between(a, b, static_cast<float>(0.5 * length_of_border / std::max(texels, 1.0))));
     }
 
     const CheckedBake& bake_;
@@ -171,11 +196,24 @@ private:
     double mean_;
 };
 
-double quantile(std::vector<double>& values, double share) {
-    if (values.empty()) return 0.0;
-    const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), values.begin() + at, values.end());
-    return values[static_cast<std::size_t>(at)];
+// Samples by ascending contrast.
+SeamContrast contrast_of(const std::vector<Sample>& sorted, bool parted, double visible) {
+    SeamContrast out;
+    for (const Sample& s : sorted) {
+        if (s.parted != parted) continue;
+        ++out.samples;
+        out.metres += 0.5 * s.metres;
+        if (s.defect.contrast > visible) out.visible_metres += 0.5 * s.metres;
+        out.largest = s.defect.contrast;
+    }
+    double below = 0.0;
+    for (const Sample& s : sorted) {
+        if (s.parted != parted) continue;
+        if (below < 0.5 * out.metres) out.median = s.defect.contrast;
+        if (below < 0.99 * out.metres) out.p99 = s.defect.contrast;
+        below += 0.5 * s.metres;
+    }
+    return out;
 }
 
 // The worst first, none within a hundredth of the scene of one that is told already.
@@ -184,8 +222,8 @@ std::vector<SeamDefect> worst_of(std::vector<Sample> samples, double visible) {
     Vec3 low{1e30f, 1e30f, 1e30f}, high{-1e30f, -1e30f, -1e30f};
     for (const Sample& s : samples) low = min(low, s.defect.position), high = max(high, s.defect.position);
     const float apart = samples.empty() ? 0.0f : 0.01f * length(high - low);
-    std::erase_if(samples, [visible](const Sample& s) { return s.defect.contrast <= visible; });
-    std::ranges::stable_sort(samples, [](const Sample& a, const Sample& b) { return a.defect.contrast > b.defect.contrast; });
+    std::erase_if(samples, [visible](const Sample& s) { return s.parted || s.defect.contrast <= visible; });
+    std::ranges::reverse(samples);
     std::vector<SeamDefect> out;
     for (const Sample& s : samples) {
         if (out.size() == kMost) break;
@@ -197,31 +235,32 @@ std::vector<SeamDefect> worst_of(std::vector<Sample> samples, double visible) {
 
 }  // namespace
 
-Result<SeamCheck> check_seams(const CheckedBake& bake, const SeamCheckOptions& options, Context& context) {
+Result<SeamCheck> check_seams(const CheckedBake& bake, const SeamCheckOptions& options, const Tracer& tracer,
+                              Context& context) {
     constexpr std::size_t kBordersPerChunk = 1024;
     const SeamSearch search(bake, options);
     std::vector<std::vector<Sample>> parts((search.size() + kBordersPerChunk - 1) / kBordersPerChunk);
     const bool done = parallel_for(
         context, search.size(), kBordersPerChunk,
         [&](const ChunkRange& range) {
-            for (std::size_t i = range.begin; i < range.end; ++i) search.walk(i, parts[range.index]);
+            Found found;
+            for (std::size_t i = range.begin; i < range.end; ++i) search.walk(i, found);
+            std::vector<std::uint8_t> blocked(found.rays.size());
+            tracer.occluded(found.rays, blocked);
+            for (std::size_t i = 0; i < blocked.size(); ++i) found.samples[i].parted = blocked[i] != 0;
+            parts[range.index] = std::move(found.samples);
         },
         "seams");
     if (!done) return cancelled_error();
     std::vector<Sample> samples;
     for (const std::vector<Sample>& part : parts) samples.insert(samples.end(), part.begin(), part.end());
+    std::ranges::stable_sort(samples, {}, [](const Sample& s) { return s.defect.contrast; });
     SeamCheck out;
-    out.samples = samples.size();
-    std::vector<double> contrasts;
-    contrasts.reserve(samples.size());
-    for (const Sample& s : samples) {
-        contrasts.push_back(s.defect.contrast);
-        out.metres += 0.5 * s.metres;
-        if (s.defect.contrast > options.visible) out.visible_metres += 0.5 * s.metres;
-        out.largest = std::max(out.largest, s.defect.contrast);
-    }
-    out.median = quantile(contrasts, 0.5);
-    out.p99 = quantile(contrasts, 0.99);
+    out.open = contrast_of(samples, false, options.visible);
+    out.parted = contrast_of(samples, true, options.visible);
+    if (getenv("DBG")) { FILE* f = fopen(getenv("DBG"), "w");
+      for (const Sample& s : samples) if (!s.parted) fprintf(f, "%g,%g,%g,%g,%g,%u,%u,%g,%g\n", s.defect.contrast, s.metres, s.defect.position.x, s.defect.position.y, s.defect.position.z, s.defect.instance_a, s.defect.instance_b, s.defect.texels.x, s.defect.texels.y);
+      fclose(f); }
     out.worst = worst_of(std::move(samples), options.visible);
     return out;
 }

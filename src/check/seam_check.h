@@ -8,6 +8,7 @@
 #include "check/checked_bake.h"
 #include "lumel/context.h"
 #include "lumel/result.h"
+#include "trace/tracer.h"
 
 namespace lumel {
 
@@ -26,17 +27,24 @@ struct SeamDefect {
     Vec2 texels{};  // of side a on `page`
 };
 
-struct SeamCheck {
+// Contrast over some of the samples. Metres are half of what the samples stand for: each is found from both sides.
+struct SeamContrast {
     std::uint64_t samples = 0;
-    double metres = 0.0;          // of seams: half of what the samples stand for, since each is found from both sides
-    double visible_metres = 0.0;  // of these, above SeamCheckOptions::visible
-    double median = 0.0, p99 = 0.0, largest = 0.0;  // of contrast over the samples
-    std::vector<SeamDefect> worst;                  // at most 100 above `visible`, far apart from each other
+    double metres = 0.0, visible_metres = 0.0;      // of seams; of these, above SeamCheckOptions::visible
+    double median = 0.0, p99 = 0.0, largest = 0.0;  // over the metres
+};
+
+struct SeamCheck {
+    // Parted: a surface stands on the seam, so that its sides are in different light for a reason: a ray from half a
+    // texel beside and above the seam to the same place on the other side meets something.
+    SeamContrast open, parted;
+    std::vector<SeamDefect> worst;  // of the open: at most 100 above `visible`, far apart from each other
 };
 
 // Contrast: |a - b| / ((a + b)/2 + 0.01 mean light), of luminances by bilinear lookup. Sampled are edges that one
 // triangle alone has at its place of the layout; partners are all such edges within the distance whose normals agree and
-// which look up another place. Stage "seams". Error: cancelled.
-Result<SeamCheck> check_seams(const CheckedBake& bake, const SeamCheckOptions& options, Context& context);
+// which look up another place. `tracer`: of the same surfaces. Stage "seams". Error: cancelled.
+Result<SeamCheck> check_seams(const CheckedBake& bake, const SeamCheckOptions& options, const Tracer& tracer,
+                              Context& context);
 
 }  // namespace lumel

@@ -98,24 +98,29 @@ Status add_instance(const LoadedScene& loaded, std::uint32_t index, CheckedBake&
 
 }  // namespace
 
-Result<CheckedBake> read_bake(const std::filesystem::path& folder) {
-    CheckedBake bake;
+Result<BakeOnDisk> read_bake(const std::filesystem::path& folder) {
+    BakeOnDisk out;
+    CheckedBake& bake = out.bake;
     LUMEL_TRY(const MasterList masters, list_masters(folder));
     for (std::uint32_t p = 0; p < masters.pages.size(); ++p) {
         LUMEL_TRY(CheckedPage page, read_page(masters.pages[p], p));
         bake.pages.push_back(std::move(page));
     }
     Context quiet(1);  // that this scene was baked already, and what else its file is warned of, is known
-    LUMEL_TRY(const LoadedScene loaded, load_scene(folder / kSceneFile, quiet));
+    LUMEL_TRY(LoadedScene loaded, load_scene(folder / kSceneFile, quiet));
     if (!find_extension(loaded.document->root, kLightmapExtension))
         return invalid((folder / kSceneFile).string(), "has no LUMEL_lightmap extension", "give the output folder of lumel bake");
     for (std::uint32_t i = 0; i < loaded.scene.instances.size(); ++i) {
         bake.instances.push_back(loaded.scene.instances[i].name);
+        const std::size_t before = bake.triangles.size();
         LUMEL_TRY_STATUS(add_instance(loaded, i, bake));
+        // A sidecar that the folder does not have may have said so.
+        if (bake.triangles.size() > before) loaded.scene.instances[i].node_class = NodeClass::lightmap;
     }
     if (bake.triangles.empty())
         return invalid((folder / kSceneFile).string(), "has no lightmapped surface", "bake again");
-    return bake;
+    out.scene = std::move(loaded.scene);
+    return out;
 }
 
 }  // namespace lumel

@@ -5,11 +5,17 @@
 
 #include "check/checked_bake.h"
 #include "lumel/result.h"
+#include "lumel/scene.h"
 
 namespace lumel {
 
+struct BakeOnDisk {
+    Scene scene;  // of scene.glb; what is lightmapped takes part in it
+    CheckedBake bake;
+};
+
 // All pages at once: some 40 bytes a pixel. Errors: io; invalid_input where the folder holds no bake, or files that do
 // not belong together.
-Result<CheckedBake> read_bake(const std::filesystem::path& folder);
+Result<BakeOnDisk> read_bake(const std::filesystem::path& folder);
 
 }  // namespace lumel

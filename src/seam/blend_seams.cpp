@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 
 #include "base/cancelled.h"
 #include "base/check.h"
@@ -19,6 +21,7 @@ constexpr std::size_t kNumbers = kLayerCount * kMoments;     // of a texel
 constexpr std::size_t kLanes = 8;                            // numbers that are solved for together
 constexpr std::size_t kBatches = (kNumbers + kLanes - 1) / kLanes;
 constexpr std::size_t kBatchesAtOnce = 4;  // on threads of their own: bounds what they take
+constexpr float kHeld = 10.0f;               // weight that holds a texel still, against 1 of a texel of seam
 using Lanes = std::array<float, kLanes>;
 using Values = std::vector<Lanes>;
 
@@ -71,7 +74,9 @@ public:
 
     // Corrections of the unknowns for the given residuals of the rows. One set of steps serves all lanes, so that each
     // goes through the same map. False: cancelled.
-    bool solve(const Values& residuals, const SeamOptions& options, const Context& context, Values& x) {
+    // `first_size`: what the tolerance is relative to; set where it is zero.
+    bool solve(const Values& residuals, const SeamOptions& options, const Context& context, double& first_size,
+               Values& x) {
         const std::size_t n = e_.texels.size();
         x.assign(n, Lanes{});
         Values gradient(n), direction(n);
@@ -81,7 +86,8 @@ public:
             direction[i] = scaled(gradient[i], 1.0f / e_.diagonal[i]);
             size += product(gradient[i], direction[i]);
         }
-        const double small = static_cast<double>(options.tolerance) * static_cast<double>(options.tolerance) * size;
+        if (first_size == 0.0) first_size = size;
+        const double small = double{options.tolerance} * double{options.tolerance} * first_size;
         for (std::uint32_t k = 0; k < options.iterations && size > small; ++k) {
             if (context.cancelled()) return false;
             multiply(direction);
@@ -149,12 +155,14 @@ void move_channel(LayerMoments& light, const LayerMoments& from, const LayerMome
     light.irradiance[c] = std::lerp(from.irradiance[c], to.irradiance[c], share);
 }
 
-// Takes each channel of each layer as far from `before` to `light` as it stays possible.
-void keep_possible(const std::array<LayerMoments, kLayerCount>& before, std::array<LayerMoments, kLayerCount>& light) {
+// Takes each channel of each layer as far from `before` to `light` as it stays possible. False: it did not get there.
+bool keep_possible(const std::array<LayerMoments, kLayerCount>& before, std::array<LayerMoments, kLayerCount>& light) {
     constexpr float kLeastShare = 1.0f / 64.0f;
+    bool whole = true;
     for (std::size_t l = 0; l < kLayerCount; ++l)
         for (std::size_t c = 0; c < 3; ++c) {
             if (is_possible(light[l], c)) continue;
+            whole = false;
             const LayerMoments wanted = light[l];
             float share = 0.5f;
             for (; share >= kLeastShare; share *= 0.5f) {
@@ -163,6 +171,7 @@ void keep_possible(const std::array<LayerMoments, kLayerCount>& before, std::arr
             }
             if (share < kLeastShare) move_channel(light[l], before[l], wanted, c, 0.0f);
         }
+    return whole;
 }
 
 }  // namespace
@@ -216,42 +225,57 @@ SeamBlender::Equations SeamBlender::equations_of(const Lightmap& map) const {
     return out;
 }
 
+// One round of all batches. Sizes are those of ConjugateGradients::solve. False: cancelled.
+bool SeamBlender::solve(const Equations& equations, std::span<double> first_sizes, Lightmap& map,
+                        Context& context) const {
+    const auto solve_batch = [&](std::size_t batch) {
+        const std::size_t first = batch * kLanes, count = std::min(kLanes, kNumbers - first);
+        Values residuals(equations.row_count());
+        for (std::size_t r = 0; r < residuals.size(); ++r) {
+            const Equations::Row& row = equations.rows[r];
+            for (std::size_t l = 0; l < count; ++l) {
+                float sum = 0.0f;
+                for (const Equations::Entry& entry : equations.entries_of(r))
+                    sum += entry.share * number_of(map.texels.layers[equations.texels[entry.unknown]], first + l);
+                if (row.remembered != kNone) sum += row.sign * remembered_[row.remembered * kNumbers + first + l];
+                residuals[r][l] = sum;
+            }
+        }
+        Values x;
+        if (!ConjugateGradients(equations).solve(residuals, options_, context, first_sizes[batch], x)) return;
+        for (std::size_t i = 0; i < x.size(); ++i)
+            for (std::size_t l = 0; l < count; ++l)
+                number_of(map.texels.layers[equations.texels[i]], first + l) += x[i][l];
+    };
+    for (std::size_t b = 0; b < kBatches; b += kBatchesAtOnce) {
+        const bool done = parallel_for(context, std::min(kBatchesAtOnce, kBatches - b), 1,
+                                       [&](const ChunkRange& range) { solve_batch(b + range.begin); });
+        if (!done || context.cancelled()) return false;
+    }
+    return true;
+}
+
 Status SeamBlender::blend(Lightmap& map, Context& context) {
     LUMEL_CHECK(map.page < pages_.size(), map.page, pages_.size());
-    const Equations equations = equations_of(map);
-    if (equations.row_count() > 0) {
+    Equations equations = equations_of(map);
+    std::array<double, kBatches> first_sizes{};
+    const std::uint32_t rounds = equations.row_count() > 0 ? options_.rounds : 0;
+    for (std::uint32_t round = 0; round < rounds; ++round) {
         std::vector<std::array<LayerMoments, kLayerCount>> before;
         before.reserve(equations.texels.size());
         for (const std::uint32_t texel : equations.texels) before.push_back(map.texels.layers[texel]);
-
-        const auto solve_batch = [&](std::size_t batch) {
-            const std::size_t first = batch * kLanes, count = std::min(kLanes, kNumbers - first);
-            Values residuals(equations.row_count());
-            for (std::size_t r = 0; r < residuals.size(); ++r) {
-                const auto& row = equations.rows[r];
-                for (std::size_t l = 0; l < count; ++l) {
-                    float sum = 0.0f;
-                    for (const auto& entry : equations.entries_of(r))
-                        sum += entry.share * number_of(before[entry.unknown], first + l);
-                    if (row.remembered != kNone)
-                        sum += row.sign * remembered_[row.remembered * kNumbers + first + l];
-                    residuals[r][l] = sum;
-                }
-            }
-            Values x;
-            if (!ConjugateGradients(equations).solve(residuals, options_, context, x)) return;
-            for (std::size_t i = 0; i < x.size(); ++i)
-                for (std::size_t l = 0; l < count; ++l)
-                    number_of(map.texels.layers[equations.texels[i]], first + l) += x[i][l];
-        };
-        for (std::size_t b = 0; b < kBatches; b += kBatchesAtOnce) {
-            const bool done = parallel_for(context, std::min(kBatchesAtOnce, kBatches - b), 1,
-                                           [&](const ChunkRange& range) { solve_batch(b + range.begin); });
-            if (!done || context.cancelled()) return cancelled_error();
-            context.report("seams", static_cast<double>(b + kBatchesAtOnce) / static_cast<double>(kBatches));
+        if (!solve(equations, first_sizes, map, context)) return cancelled_error();
+        // Texels that cannot go where they should are held there, and the others go the rest of the way.
+        std::size_t held = 0;
+        for (std::size_t i = 0; i < before.size(); ++i) {
+            if (keep_possible(before[i], map.texels.layers[equations.texels[i]])) continue;
+            ++held;
+            equations.diagonal[i] += kHeld - equations.hold[i];
+            equations.hold[i] = kHeld;
         }
-        for (std::size_t i = 0; i < before.size(); ++i)
-            keep_possible(before[i], map.texels.layers[equations.texels[i]]);
+        context.report("seams", static_cast<double>(round + 1) / static_cast<double>(rounds));
+        if (getenv("DBGH")) fprintf(stderr, "round %u: %zu of %zu held\n", round, held, before.size());
+        if (held == 0) break;
     }
     remember(map);
     return success();

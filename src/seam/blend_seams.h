@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "chart/chart_set.h"
@@ -18,7 +19,8 @@ struct SeamOptions {
     float samples_per_texel = 2.0f;  // of the denser side of a seam
     float hold = 0.003f;         // weight that keeps a baked texel as it is, against 1 of a texel of seam
     float hold_ring = 0.0003f;   // of texels that were not baked: filled, dilated
-    std::uint32_t iterations = 60;  // of conjugate gradients, at most
+    std::uint32_t rounds = 3;       // of solving, at most: more than one where texels are at the limit of valid light
+    std::uint32_t iterations = 60;  // of conjugate gradients in a round, at most
     float tolerance = 1e-3f;     // of the gradient, relative to the first, at which they stop
 };
 
@@ -38,6 +40,7 @@ public:
 private:
     struct Equations;
     [[nodiscard]] Equations equations_of(const Lightmap& map) const;
+    bool solve(const Equations& equations, std::span<double> first_sizes, Lightmap& map, Context& context) const;
     void remember(const Lightmap& map);
 
     std::vector<SeamSample> samples_;        // by the later of their pages
