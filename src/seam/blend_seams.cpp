@@ -19,8 +19,8 @@ namespace {
 constexpr std::size_t kMoments = 3 * (kShCoefficients + 1);  // numbers of a layer
 constexpr std::size_t kNumbers = kLayerCount * kMoments;     // of a texel
 constexpr std::size_t kLanes = 8;                            // numbers that are solved for together
-constexpr std::size_t kBatches = (kNumbers + kLanes - 1) / kLanes;
-constexpr std::size_t kBatchesAtOnce = 4;  // on threads of their own: bounds what they take
+constexpr std::size_t kBatchesOfLayer = (kMoments + kLanes - 1) / kLanes;  // also on threads of their own at once
+constexpr std::size_t kBatches = kLayerCount * kBatchesOfLayer;
 constexpr float kHeld = 10.0f;               // weight that holds a texel still, against 1 of a texel of seam
 using Lanes = std::array<float, kLanes>;
 using Values = std::vector<Lanes>;
@@ -57,7 +57,7 @@ struct SeamBlender::Equations {
     std::vector<Row> rows;  // and one past the end
     std::vector<Entry> entries;
     std::vector<std::uint32_t> texels;  // of each unknown: index into the lightmap
-    std::vector<float> hold, diagonal;  // per unknown
+    std::array<std::vector<float>, kLayerCount> hold, diagonal;  // per unknown
 
     [[nodiscard]] std::size_t row_count() const { return rows.empty() ? 0 : rows.size() - 1; }
     [[nodiscard]] std::span<const Entry> entries_of(std::size_t row) const {
@@ -70,7 +70,9 @@ namespace {
 template <class Equations>
 class ConjugateGradients {
 public:
-    explicit ConjugateGradients(const Equations& equations) : e_(equations), image_(equations.texels.size()) {}
+    ConjugateGradients(const Equations& equations, std::size_t layer)
+        : e_(equations), hold_(equations.hold[layer]), diagonal_(equations.diagonal[layer]),
+          image_(equations.texels.size()) {}
 
     // Corrections of the unknowns for the given residuals of the rows. One set of steps serves all lanes, so that each
     // goes through the same map. False: cancelled.
@@ -83,7 +85,7 @@ public:
         for (std::size_t r = 0; r < e_.row_count(); ++r) spread(r, residuals[r], -1.0f, gradient);
         double size = 0.0;
         for (std::size_t i = 0; i < n; ++i) {
-            direction[i] = scaled(gradient[i], 1.0f / e_.diagonal[i]);
+            direction[i] = scaled(gradient[i], 1.0f / diagonal_[i]);
             size += product(gradient[i], direction[i]);
         }
         if (first_size == 0.0) first_size = size;
@@ -99,11 +101,11 @@ public:
             for (std::size_t i = 0; i < n; ++i) {
                 add(direction[i], step, x[i]);
                 add(image_[i], -step, gradient[i]);
-                next += product(gradient[i], gradient[i]) / static_cast<double>(e_.diagonal[i]);
+                next += product(gradient[i], gradient[i]) / static_cast<double>(diagonal_[i]);
             }
             const auto turn = static_cast<float>(next / size);
             for (std::size_t i = 0; i < n; ++i) {
-                const float inverse = 1.0f / e_.diagonal[i];
+                const float inverse = 1.0f / diagonal_[i];
                 for (std::size_t l = 0; l < kLanes; ++l)
                     direction[i][l] = gradient[i][l] * inverse + turn * direction[i][l];
             }
@@ -130,7 +132,7 @@ private:
         for (const auto& entry : e_.entries_of(r)) add(value, sign * e_.rows[r].weight * entry.share, to[entry.unknown]);
     }
     void multiply(const Values& v) {
-        for (std::size_t i = 0; i < v.size(); ++i) image_[i] = scaled(v[i], e_.hold[i]);
+        for (std::size_t i = 0; i < v.size(); ++i) image_[i] = scaled(v[i], hold_[i]);
         for (std::size_t r = 0; r < e_.row_count(); ++r) {
             Lanes sum{};
             for (const auto& entry : e_.entries_of(r)) add(v[entry.unknown], entry.share, sum);
@@ -139,6 +141,7 @@ private:
     }
 
     const Equations& e_;
+    const std::vector<float>&hold_, &diagonal_;
     Values image_;
 };
 
@@ -155,22 +158,28 @@ void move_channel(LayerMoments& light, const LayerMoments& from, const LayerMome
     light.irradiance[c] = std::lerp(from.irradiance[c], to.irradiance[c], share);
 }
 
-// Takes each channel of each layer as far from `before` to `light` as it stays possible. False: it did not get there.
-bool keep_possible(const std::array<LayerMoments, kLayerCount>& before, std::array<LayerMoments, kLayerCount>& light) {
+// Takes each channel as far from `before` to `light` as it stays possible. False: it did not get there.
+bool keep_possible(const LayerMoments& before, LayerMoments& light) {
     constexpr float kLeastShare = 1.0f / 64.0f;
     bool whole = true;
-    for (std::size_t l = 0; l < kLayerCount; ++l)
-        for (std::size_t c = 0; c < 3; ++c) {
-            if (is_possible(light[l], c)) continue;
-            whole = false;
-            const LayerMoments wanted = light[l];
-            float share = 0.5f;
-            for (; share >= kLeastShare; share *= 0.5f) {
-                move_channel(light[l], before[l], wanted, c, share);
-                if (is_possible(light[l], c)) break;
-            }
-            if (share < kLeastShare) move_channel(light[l], before[l], wanted, c, 0.0f);
+    for (std::size_t c = 0; c < 3; ++c) {
+        if (is_possible(light, c)) continue;
+        whole = false;
+        const LayerMoments wanted = light;
+        // To where neither is negative, then by halves to where the vector is valid.
+        float share = 1.0f;
+        const auto bound = [&](float from, float to) {
+            if (to < 0.0f) share = std::min(share, from > 0.0f ? from / (from - to) : 0.0f);
+        };
+        bound(before.irradiance[c], wanted.irradiance[c]);
+        bound(before.sh[0][c], wanted.sh[0][c]);
+        share *= 0.999f;  // rounding
+        for (;; share *= 0.5f) {
+            if (share < kLeastShare) share = 0.0f;
+            move_channel(light, before, wanted, c, share);
+            if (share == 0.0f || is_possible(light, c)) break;
         }
+    }
     return whole;
 }
 
@@ -216,12 +225,15 @@ SeamBlender::Equations SeamBlender::equations_of(const Lightmap& map) const {
         out.rows.push_back(row);
     }
     out.rows.push_back({static_cast<std::uint32_t>(out.entries.size())});
+    std::vector<float> hold, diagonal;
     for (const std::uint32_t texel : out.texels)
-        out.hold.push_back(map.coverage[texel] == Coverage::baked ? options_.hold : options_.hold_ring);
-    out.diagonal = out.hold;
+        hold.push_back(map.coverage[texel] == Coverage::baked ? options_.hold : options_.hold_ring);
+    diagonal = hold;
     for (std::size_t r = 0; r < out.row_count(); ++r)
         for (const auto& entry : out.entries_of(r))
-            out.diagonal[entry.unknown] += out.rows[r].weight * entry.share * entry.share;
+            diagonal[entry.unknown] += out.rows[r].weight * entry.share * entry.share;
+    out.hold.fill(hold);
+    out.diagonal.fill(diagonal);
     return out;
 }
 
@@ -229,7 +241,8 @@ SeamBlender::Equations SeamBlender::equations_of(const Lightmap& map) const {
 bool SeamBlender::solve(const Equations& equations, std::span<double> first_sizes, Lightmap& map,
                         Context& context) const {
     const auto solve_batch = [&](std::size_t batch) {
-        const std::size_t first = batch * kLanes, count = std::min(kLanes, kNumbers - first);
+        const std::size_t layer = batch / kBatchesOfLayer, lane = batch % kBatchesOfLayer * kLanes;
+        const std::size_t first = layer * kMoments + lane, count = std::min(kLanes, kMoments - lane);
         Values residuals(equations.row_count());
         for (std::size_t r = 0; r < residuals.size(); ++r) {
             const Equations::Row& row = equations.rows[r];
@@ -242,13 +255,13 @@ bool SeamBlender::solve(const Equations& equations, std::span<double> first_size
             }
         }
         Values x;
-        if (!ConjugateGradients(equations).solve(residuals, options_, context, first_sizes[batch], x)) return;
+        if (!ConjugateGradients(equations, layer).solve(residuals, options_, context, first_sizes[batch], x)) return;
         for (std::size_t i = 0; i < x.size(); ++i)
             for (std::size_t l = 0; l < count; ++l)
                 number_of(map.texels.layers[equations.texels[i]], first + l) += x[i][l];
     };
-    for (std::size_t b = 0; b < kBatches; b += kBatchesAtOnce) {
-        const bool done = parallel_for(context, std::min(kBatchesAtOnce, kBatches - b), 1,
+    for (std::size_t b = 0; b < kBatches; b += kBatchesOfLayer) {
+        const bool done = parallel_for(context, kBatchesOfLayer, 1,
                                        [&](const ChunkRange& range) { solve_batch(b + range.begin); });
         if (!done || context.cancelled()) return false;
     }
@@ -267,12 +280,13 @@ Status SeamBlender::blend(Lightmap& map, Context& context) {
         if (!solve(equations, first_sizes, map, context)) return cancelled_error();
         // Texels that cannot go where they should are held there, and the others go the rest of the way.
         std::size_t held = 0;
-        for (std::size_t i = 0; i < before.size(); ++i) {
-            if (keep_possible(before[i], map.texels.layers[equations.texels[i]])) continue;
-            ++held;
-            equations.diagonal[i] += kHeld - equations.hold[i];
-            equations.hold[i] = kHeld;
-        }
+        for (std::size_t i = 0; i < before.size(); ++i)
+            for (std::size_t l = 0; l < kLayerCount; ++l) {
+                if (keep_possible(before[i][l], map.texels.layers[equations.texels[i]][l])) continue;
+                ++held;
+                equations.diagonal[l][i] += kHeld - equations.hold[l][i];
+                equations.hold[l][i] = kHeld;
+            }
         context.report("seams", static_cast<double>(round + 1) / static_cast<double>(rounds));
         if (getenv("DBGH")) fprintf(stderr, "round %u: %zu of %zu held\n", round, held, before.size());
         if (held == 0) break;

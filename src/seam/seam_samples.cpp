@@ -31,11 +31,9 @@ void sample_seam(std::span<const BorderEdge> edges, const Seam& seam, const Seam
     const float texels_a = length(texels_at(a, seam.a_to) - texels_at(a, seam.a_from));
     const float texels_b = length(texels_at(b, seam.b_to) - texels_at(b, seam.b_from));
     const float metres = length(position_at(a, seam.a_to) - position_at(a, seam.a_from));
-    const float denser = std::max(texels_a, texels_b), coarser = std::min(texels_a, texels_b);
+    const float denser = std::max(texels_a, texels_b);
     part.metres += static_cast<double>(metres);
-    // Beside the seam by half a texel of the coarser side, or of the other where that one has no length.
-    const float texel = metres / std::max(coarser > 0.0f ? coarser : denser, 1.0f);
-    const float reach = 0.5f * texel;
+    const float reach = 0.5f * metres / std::max(denser, 1.0f);
     // At least one, so that of charts below a texel each side has a say.
     const auto n = static_cast<std::uint32_t>(std::ceil(std::max(1.0f, denser * per_texel)));
     const float weight = std::max(denser, 1.0f / per_texel) / static_cast<float>(n);

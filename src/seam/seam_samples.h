@@ -30,8 +30,8 @@ struct SeamSamples {
 };
 
 // `per_texel`: samples in a texel of the denser side. Samples whose normals are not within the rule's gate are left
-// out, and those where a surface stands between the two sides: a ray from half a texel beside and above the seam to the
-// other side meets it. Stage "seams". Error: cancelled.
+// out, and those where a surface stands between the two sides: a ray from half a texel (of the denser side) beside and
+// above the seam to the other side meets it. Stage "seams". Error: cancelled.
 Result<SeamSamples> make_seam_samples(std::span<const BorderEdge> edges, std::span<const Seam> seams,
                                       const SeamRule& rule, float per_texel, const Tracer& tracer, Context& context);
 
