@@ -33,8 +33,8 @@ void draw(const BorderEdge& to, float t0, float t1, const BorderEdge& from, floa
         if (x >= page.width || y >= page.height || pixel == last) continue;
         last = pixel;
         const Vec2 place = texels_at(from, std::lerp(s0, s1, t));
-        const Vec3 other = sample_bilinear(source, {place.x / static_cast<float>(source.width),
-                                                    place.y / static_cast<float>(source.height)});
+        const Vec3 other = sample_bilinear(
+            source, {place.x / static_cast<float>(source.width), place.y / static_cast<float>(source.height)});
         for (std::size_t c = 0; c < 3; ++c) {
             float& value = page.at(x, y)[c];
             value = std::lerp(value, other[c], kOpacity);

@@ -1,5 +1,5 @@
-// Contrast along the seams of real scenes, by the checker's own search: as baked, with the seed's lines drawn over them,
-// and solved. And what that changed elsewhere, and cost.
+// Contrast along the seams of real scenes, by the checker's own search: as baked, with the seed's lines drawn over
+// them, and solved. And what that changed elsewhere, and cost.
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -64,7 +64,8 @@ void add_triangles(const Scene& scene, const WorldGeometry& geometry, Baked& bak
         const AtlasPage& page = baked.atlas.pages[uv.page];
         for (std::size_t k = 0; k < 3; ++k) {
             out.normal[k] = geometry.shading_normal(t, k == 1 ? 1.0f : 0.0f, k == 2 ? 1.0f : 0.0f);
-            out.uv[k] = {uv.texels[k].x / static_cast<float>(page.width), uv.texels[k].y / static_cast<float>(page.height)};
+            out.uv[k] = {uv.texels[k].x / static_cast<float>(page.width),
+                         uv.texels[k].y / static_cast<float>(page.height)};
         }
         baked.checked.triangles.push_back(out);
     }
@@ -114,9 +115,9 @@ void print(const std::string& scene, const Row& row, const Baked& baked, std::ui
     std::filesystem::create_directories(options.pictures);
     const float exposure = auto_exposure(baked.checked.pages[0].light);
     for (std::size_t p = 0; p < checked.pages.size(); ++p)
-        need(write_png(std::filesystem::path(options.pictures) /
-                           (scene + "_" + row.method + "_" + std::to_string(p) + ".png"),
-                       checked.pages[p].width, checked.pages[p].height, 3, tonemap(checked.pages[p].light, exposure)));
+        need(write_png(
+            std::filesystem::path(options.pictures) / (scene + "_" + row.method + "_" + std::to_string(p) + ".png"),
+            checked.pages[p].width, checked.pages[p].height, 3, tonemap(checked.pages[p].light, exposure)));
 }
 
 void mark(const std::vector<SeamSample>& samples, LookupFilter filter, const Baked& baked,
@@ -159,7 +160,8 @@ void compare_methods(const std::string& name, const Transport& transport, Baked&
     const CpuStopwatch line_time;
     std::vector<Image> lines = as_baked;
     blend_lines(edges, seams, instance, kPasses, lines);
-    print(name, {"lines", line_time.seconds()}, baked, texels, touched, std::move(lines), options, transport.tracer, context);
+    print(name, {"lines", line_time.seconds()}, baked, texels, touched, std::move(lines), options, transport.tracer,
+          context);
 
     const CpuStopwatch solve_time;
     SeamBlender blender(samples.samples, baked.atlas, options.solver);
@@ -169,9 +171,10 @@ void compare_methods(const std::string& name, const Transport& transport, Baked&
         need(blender.blend(copy, context));
         solved.push_back(light_of(copy));
     }
-    print(name, {"squares", search + solve_time.seconds()}, baked, texels, touched, std::move(solved), options, transport.tracer, context);
-    std::fprintf(stderr, "%s: %zu edges, %zu seams, %.1f m, %zu samples, %llu hidden, search %.3f cpu-s\n", name.c_str(),
-                 edges.size(), seams.size(), samples.metres, samples.samples.size(),
+    print(name, {"squares", search + solve_time.seconds()}, baked, texels, touched, std::move(solved), options,
+          transport.tracer, context);
+    std::fprintf(stderr, "%s: %zu edges, %zu seams, %.1f m, %zu samples, %llu hidden, search %.3f cpu-s\n",
+                 name.c_str(), edges.size(), seams.size(), samples.metres, samples.samples.size(),
                  static_cast<unsigned long long>(samples.hidden), search);
 }
 
@@ -205,9 +208,10 @@ void run_scene(const std::string& path, const Options& options) {
 }
 
 void run(const Options& options) {
-    std::printf("scene,method,texels,samples,metres,visible_metres,median_percent,p99_percent,largest_percent,"
-                "parted_samples,parted_metres,parted_visible_metres,parted_median_percent,parted_p99_percent,"
-                "parted_largest_percent,elsewhere_rms_percent,cpu_seconds,cpu_seconds_per_million_texels\n");
+    std::printf(
+        "scene,method,texels,samples,metres,visible_metres,median_percent,p99_percent,largest_percent,"
+        "parted_samples,parted_metres,parted_visible_metres,parted_median_percent,parted_p99_percent,"
+        "parted_largest_percent,elsewhere_rms_percent,cpu_seconds,cpu_seconds_per_million_texels\n");
     for (const std::string& scene : options.scenes) run_scene(scene, options);
 }
 
@@ -218,7 +222,8 @@ void add_seams(CLI::App& app) {
     CLI::App* command = app.add_subcommand("seams", "Contrast along seams: as baked, lines drawn over, least squares");
     command->add_option("scenes", options->scenes, ".glb or .gltf")->required()->check(CLI::ExistingFile);
     command->add_option("--samples", options->samples_per_texel, "Paths per texel")->check(CLI::Range(1u, 1u << 20));
-    command->add_option("--texels-per-metre", options->density, "0: the preset's budget")->check(CLI::NonNegativeNumber);
+    command->add_option("--texels-per-metre", options->density, "0: the preset's budget")
+        ->check(CLI::NonNegativeNumber);
     command->add_option("--max-page", options->max_page, "Largest page edge")->check(CLI::Range(64u, 16384u));
     command->add_flag("--preview", options->preview, "Of preset preview: denoised");
     command->add_option("--threads", options->threads, "1 to 256")->check(CLI::Range(1u, 256u));

@@ -364,8 +364,8 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
     if (options.seams) {
         LUMEL_TRY(seams, make_seam_blender(charts, atlas, transport, report, context));
     }
-    const PageBaker baker{scene,  charts, atlas, transport,                 options, path,
-                          report, bias,   seams ? &*seams : nullptr, context};
+    const PageBaker baker{scene,  charts, atlas, transport, options, path, report, bias, seams ? &*seams : nullptr,
+                          context};
     LUMEL_TRY_STATUS(bake_pages(baker, sink, totals));
     seams.reset();
     report.cell_bias = bias.relative();

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
-#include <cstdio>
-#include <cstdlib>
 
 #include "base/cancelled.h"
 #include "base/parallel.h"
@@ -64,8 +62,8 @@ public:
     template <class Visit>
     void for_each_in_cell(Vec3 p, Visit&& visit) const {
         const Cell cell = cell_of(p, 0.0);
-        for (auto it = std::ranges::lower_bound(entries_, std::pair(cell, 0u)); it != entries_.end() && it->first == cell;
-             ++it)
+        for (auto it = std::ranges::lower_bound(entries_, std::pair(cell, 0u));
+             it != entries_.end() && it->first == cell; ++it)
             visit(it->second);
     }
 
@@ -131,7 +129,10 @@ Ray ray_between(const Point& a, const Point& b, float reach) {
 class SeamSearch {
 public:
     SeamSearch(const CheckedBake& bake, const SeamCheckOptions& options)
-        : bake_(bake), options_(options), borders_(borders_of(bake)), grid_(bake, borders_, options.distance),
+        : bake_(bake),
+          options_(options),
+          borders_(borders_of(bake)),
+          grid_(bake, borders_, options.distance),
           mean_(mean_light(bake)) {}
 
     [[nodiscard]] std::size_t size() const { return borders_.size(); }
@@ -258,9 +259,6 @@ Result<SeamCheck> check_seams(const CheckedBake& bake, const SeamCheckOptions& o
     SeamCheck out;
     out.open = contrast_of(samples, false, options.visible);
     out.parted = contrast_of(samples, true, options.visible);
-    if (getenv("DBG")) { FILE* f = fopen(getenv("DBG"), "w");
-      for (const Sample& s : samples) if (!s.parted) fprintf(f, "%g,%g,%g,%g,%g,%u,%u,%g,%g\n", s.defect.contrast, s.metres, s.defect.position.x, s.defect.position.y, s.defect.position.z, s.defect.instance_a, s.defect.instance_b, s.defect.texels.x, s.defect.texels.y);
-      fclose(f); }
     out.worst = worst_of(std::move(samples), options.visible);
     return out;
 }

@@ -42,8 +42,8 @@ struct SeamCheck {
 };
 
 // Contrast: |a - b| / ((a + b)/2 + 0.01 mean light), of luminances by bilinear lookup. Sampled are edges that one
-// triangle alone has at its place of the layout; partners are all such edges within the distance whose normals agree and
-// which look up another place. `tracer`: of the same surfaces. Stage "seams". Error: cancelled.
+// triangle alone has at its place of the layout; partners are all such edges within the distance whose normals agree
+// and which look up another place. `tracer`: of the same surfaces. Stage "seams". Error: cancelled.
 Result<SeamCheck> check_seams(const CheckedBake& bake, const SeamCheckOptions& options, const Tracer& tracer,
                               Context& context);
 

@@ -1,9 +1,11 @@
 #include "io/read_bake.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "base/try.h"
+#include "chart/topology.h"
 #include "encode/units.h"
 #include "io/gltf_document_internal.h"
 #include "io/image_io.h"
@@ -67,6 +69,12 @@ void set_normals(const Mesh& mesh, const Triangle& vertices, const Affine& trans
     }
 }
 
+bool has_area(const CheckedTriangle& t) {
+    const Vec3 a = t.position[1] - t.position[0], b = t.position[2] - t.position[0], c = b - a;
+    const double longest = static_cast<double>(std::max({dot(a, a), dot(b, b), dot(c, c)}));
+    return static_cast<double>(length(cross(a, b))) > kZeroAreaRatio * longest;
+}
+
 Status add_instance(const LoadedScene& loaded, std::uint32_t index, CheckedBake& bake) {
     const Instance& instance = loaded.scene.instances[index];
     const Mesh& mesh = *loaded.scene.meshes[instance.mesh];
@@ -86,9 +94,10 @@ Status add_instance(const LoadedScene& loaded, std::uint32_t index, CheckedBake&
                 out.position[k] = transform_point(instance.transform, mesh.positions[vertices[k]]);
                 out.uv[k] = mesh.uv1[vertices[k]];
                 if (!is_finite(out.uv[k]))
-                    return invalid(loaded.document->where, "'" + instance.name + "' has a lightmap UV that is not finite",
-                                   "bake again");
+                    return invalid(loaded.document->where,
+                                   "'" + instance.name + "' has a lightmap UV that is not finite", "bake again");
             }
+            if (!has_area(out)) continue;  // no pixel shows it, and its lightmap UVs mean nothing
             set_normals(mesh, vertices, instance.transform, out);
             bake.triangles.push_back(out);
         }
@@ -109,7 +118,8 @@ Result<BakeOnDisk> read_bake(const std::filesystem::path& folder) {
     Context quiet(1);  // that this scene was baked already, and what else its file is warned of, is known
     LUMEL_TRY(LoadedScene loaded, load_scene(folder / kSceneFile, quiet));
     if (!find_extension(loaded.document->root, kLightmapExtension))
-        return invalid((folder / kSceneFile).string(), "has no LUMEL_lightmap extension", "give the output folder of lumel bake");
+        return invalid((folder / kSceneFile).string(), "has no LUMEL_lightmap extension",
+                       "give the output folder of lumel bake");
     for (std::uint32_t i = 0; i < loaded.scene.instances.size(); ++i) {
         bake.instances.push_back(loaded.scene.instances[i].name);
         const std::size_t before = bake.triangles.size();

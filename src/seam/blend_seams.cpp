@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 
 #include "base/cancelled.h"
 #include "base/check.h"
@@ -16,12 +14,12 @@
 namespace lumel {
 namespace {
 
-constexpr std::size_t kMoments = 3 * (kShCoefficients + 1);  // numbers of a layer
-constexpr std::size_t kNumbers = kLayerCount * kMoments;     // of a texel
-constexpr std::size_t kLanes = 8;                            // numbers that are solved for together
+constexpr std::size_t kMoments = 3 * (kShCoefficients + 1);                // numbers of a layer
+constexpr std::size_t kNumbers = kLayerCount * kMoments;                   // of a texel
+constexpr std::size_t kLanes = 8;                                          // numbers that are solved for together
 constexpr std::size_t kBatchesOfLayer = (kMoments + kLanes - 1) / kLanes;  // also on threads of their own at once
 constexpr std::size_t kBatches = kLayerCount * kBatchesOfLayer;
-constexpr float kHeld = 10.0f;               // weight that holds a texel still, against 1 of a texel of seam
+constexpr float kHeld = 10.0f;  // weight that holds a texel still, against 1 of a texel of seam
 using Lanes = std::array<float, kLanes>;
 using Values = std::vector<Lanes>;
 
@@ -56,7 +54,7 @@ struct SeamBlender::Equations {
     };
     std::vector<Row> rows;  // and one past the end
     std::vector<Entry> entries;
-    std::vector<std::uint32_t> texels;  // of each unknown: index into the lightmap
+    std::vector<std::uint32_t> texels;                           // of each unknown: index into the lightmap
     std::array<std::vector<float>, kLayerCount> hold, diagonal;  // per unknown
 
     [[nodiscard]] std::size_t row_count() const { return rows.empty() ? 0 : rows.size() - 1; }
@@ -71,7 +69,9 @@ template <class Equations>
 class ConjugateGradients {
 public:
     ConjugateGradients(const Equations& equations, std::size_t layer)
-        : e_(equations), hold_(equations.hold[layer]), diagonal_(equations.diagonal[layer]),
+        : e_(equations),
+          hold_(equations.hold[layer]),
+          diagonal_(equations.diagonal[layer]),
           image_(equations.texels.size()) {}
 
     // Corrections of the unknowns for the given residuals of the rows. One set of steps serves all lanes, so that each
@@ -129,7 +129,8 @@ private:
     }
     // The transpose of row r.
     void spread(std::size_t r, const Lanes& value, float sign, Values& to) const {
-        for (const auto& entry : e_.entries_of(r)) add(value, sign * e_.rows[r].weight * entry.share, to[entry.unknown]);
+        for (const auto& entry : e_.entries_of(r))
+            add(value, sign * e_.rows[r].weight * entry.share, to[entry.unknown]);
     }
     void multiply(const Values& v) {
         for (std::size_t i = 0; i < v.size(); ++i) image_[i] = scaled(v[i], hold_[i]);
@@ -261,8 +262,8 @@ bool SeamBlender::solve(const Equations& equations, std::span<double> first_size
                 number_of(map.texels.layers[equations.texels[i]], first + l) += x[i][l];
     };
     for (std::size_t b = 0; b < kBatches; b += kBatchesOfLayer) {
-        const bool done = parallel_for(context, kBatchesOfLayer, 1,
-                                       [&](const ChunkRange& range) { solve_batch(b + range.begin); });
+        const bool done =
+            parallel_for(context, kBatchesOfLayer, 1, [&](const ChunkRange& range) { solve_batch(b + range.begin); });
         if (!done || context.cancelled()) return false;
     }
     return true;
@@ -288,7 +289,6 @@ Status SeamBlender::blend(Lightmap& map, Context& context) {
                 equations.hold[l][i] = kHeld;
             }
         context.report("seams", static_cast<double>(round + 1) / static_cast<double>(rounds));
-        if (getenv("DBGH")) fprintf(stderr, "round %u: %zu of %zu held\n", round, held, before.size());
         if (held == 0) break;
     }
     remember(map);

@@ -16,12 +16,12 @@ namespace lumel {
 
 struct SeamOptions {
     LookupFilter filter = LookupFilter::bilinear;  // with which the runtime looks up
-    float samples_per_texel = 2.0f;  // of the denser side of a seam
-    float hold = 0.003f;         // weight that keeps a baked texel as it is, against 1 of a texel of seam
-    float hold_ring = 0.0003f;   // of texels that were not baked: filled, dilated
+    float samples_per_texel = 2.0f;                // of the denser side of a seam
+    float hold = 0.003f;            // weight that keeps a baked texel as it is, against 1 of a texel of seam
+    float hold_ring = 0.0003f;      // of texels that were not baked: filled, dilated
     std::uint32_t rounds = 3;       // of solving, at most: more than one where texels are at the limit of valid light
     std::uint32_t iterations = 60;  // of conjugate gradients in a round, at most
-    float tolerance = 1e-3f;     // of the gradient, relative to the first, at which they stop
+    float tolerance = 1e-3f;        // of the gradient, relative to the first, at which they stop
 };
 
 // Pages come one at a time, in order, and leave: what they show along seams to later pages is remembered, and those

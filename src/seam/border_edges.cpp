@@ -65,7 +65,8 @@ std::vector<BorderEdge> find_border_edges(const Scene& scene, const WorldGeometr
             const Vec3 along = normalize_or(to - from, {});
             if (along == Vec3{}) continue;
             const Vec3 across = corners[(k + 2) % 3] - from;
-            out.push_back({from, to, vertex_normal(geometry, triangle, k), vertex_normal(geometry, triangle, (k + 1) % 3),
+            out.push_back({from, to, vertex_normal(geometry, triangle, k),
+                           vertex_normal(geometry, triangle, (k + 1) % 3),
                            normalize_or(across - along * dot(across, along), {}), uv.texels[k], uv.texels[(k + 1) % 3],
                            uv.page, triangle});
         }

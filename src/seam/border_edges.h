@@ -11,9 +11,9 @@ namespace lumel {
 
 // An edge of a triangle across which the layout does not go on.
 struct BorderEdge {
-    Vec3 from, to;            // world space, metres
+    Vec3 from, to;                    // world space, metres
     Vec3 normal_from{}, normal_to{};  // unit: the vertex normals, with which the runtime shades
-    Vec3 inward{};            // unit: in the triangle's plane, off the edge into the triangle
+    Vec3 inward{};                    // unit: in the triangle's plane, off the edge into the triangle
     Vec2 texels_from{}, texels_to{};  // lightmap UV, texels of the page
     std::uint32_t page = kNone, triangle = kNone;
 };

@@ -1,5 +1,5 @@
-// Where two borders of charts are the same line in the world, but not of the layout: UV seams inside a mesh, T-junctions,
-// and edges that different instances share.
+// Where two borders of charts are the same line in the world, but not of the layout: UV seams inside a mesh,
+// T-junctions, and edges that different instances share.
 #pragma once
 
 #include <cstdint>
@@ -13,9 +13,9 @@
 namespace lumel {
 
 struct SeamRule {
-    float distance = 1e-3f;           // metres: of two lines that are taken for one
+    float distance = 1e-3f;            // metres: of two lines that are taken for one
     float normal_cosine = 0.9396926f;  // 20 degrees: of normals of one surface
-    float same_texels = 0.02f;        // texels: lookups so near each other are one
+    float same_texels = 0.02f;         // texels: lookups so near each other are one
 };
 
 // The piece of edge `a` between two of its parameters (0 at `from`, 1 at `to`), and what of edge `b` it runs along.

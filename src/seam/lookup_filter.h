@@ -32,8 +32,8 @@ struct Lookup {
         for (std::uint32_t j = 0; j < size; ++j)
             for (std::uint32_t i = 0; i < size; ++i)
                 if (const float share = across[i] * down[j]; share > 0.0f)
-                    visit(inside(x + static_cast<std::int32_t>(i), width), inside(y + static_cast<std::int32_t>(j), height),
-                          share);
+                    visit(inside(x + static_cast<std::int32_t>(i), width),
+                          inside(y + static_cast<std::int32_t>(j), height), share);
     }
 };
 

@@ -11,7 +11,7 @@ namespace {
 
 struct Part {
     std::vector<SeamSample> samples;
-    std::vector<Ray> rays;            // one per sample; without length where both sides are the same
+    std::vector<Ray> rays;  // one per sample; without length where both sides are the same
     std::vector<std::uint8_t> blocked;
     double metres = 0.0;
     std::uint64_t hidden = 0;
@@ -26,7 +26,8 @@ Ray ray_across(Vec3 from, Vec3 to) {
     return ray;
 }
 
-void sample_seam(std::span<const BorderEdge> edges, const Seam& seam, const SeamRule& rule, float per_texel, Part& part) {
+void sample_seam(std::span<const BorderEdge> edges, const Seam& seam, const SeamRule& rule, float per_texel,
+                 Part& part) {
     const BorderEdge &a = edges[seam.a], &b = edges[seam.b];
     const float texels_a = length(texels_at(a, seam.a_to) - texels_at(a, seam.a_from));
     const float texels_b = length(texels_at(b, seam.b_to) - texels_at(b, seam.b_from));
@@ -44,8 +45,8 @@ void sample_seam(std::span<const BorderEdge> edges, const Seam& seam, const Seam
         if (dot(normal_a, normal_b) < rule.normal_cosine) continue;
         const Vec3 lift = normalize_or(normal_a + normal_b, normal_a) * reach;
         part.samples.push_back({{a.page, texels_at(a, on_a)}, {b.page, texels_at(b, on_b)}, weight});
-        part.rays.push_back(ray_across(position_at(a, on_a) + a.inward * reach + lift,
-                                       position_at(b, on_b) + b.inward * reach + lift));
+        part.rays.push_back(
+            ray_across(position_at(a, on_a) + a.inward * reach + lift, position_at(b, on_b) + b.inward * reach + lift));
         // Faces on one side of the line lie on each other: nothing is between them.
         if (part.rays.back().tmax < 0.1f * reach) part.rays.back().tmax = 0.0f;
     }

@@ -1,0 +1,36 @@
+// The gate: figures of a bake against what is allowed.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "check/seam_check.h"
+#include "check/texel_check.h"
+
+namespace lumel {
+
+// What is allowed at most. Below zero: anything is.
+struct CheckLimits {
+    double seam_p99 = -1.0;                                    // contrast of open seams, of 1
+    double seam_visible = -1.0;                                // share of their length above 1 %
+    double invalid = 0.05;                                     // filled over covered texels
+    double unconverged = -1.0;                                 // share of baked texels
+    double outliers = 0.05;                                    // share of the area
+    double not_finite = 0.0, uncovered = 0.0, overlaps = 0.0;  // numbers
+    double black = -1.0;  // a number; geometry inside each other has some for a reason
+};
+
+struct Finding {
+    std::string name;  // stable, snake_case: a key in JSON
+    std::string text;  // what it is, for people
+    double value = 0.0, limit = -1.0;
+    bool is_share = false;  // shown in percent
+    std::vector<TexelDefect> places;
+
+    [[nodiscard]] bool passed() const { return limit < 0.0 || value <= limit; }
+};
+
+// In a fixed order: all figures that have a limit.
+std::vector<Finding> judge(const SeamCheck& seams, const TexelCheck& texels, const CheckLimits& limits);
+
+}  // namespace lumel

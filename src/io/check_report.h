@@ -1,0 +1,27 @@
+// What `lumel check` leaves: check.json for programs, check.html with pictures for people.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "check/checked_bake.h"
+#include "check/verdict.h"
+#include "lumel/result.h"
+
+namespace lumel {
+
+// All that is told.
+struct CheckReport {
+    const CheckedBake& bake;
+    const SeamCheck& seams;
+    const TexelCheck& texels;
+    std::span<const Finding> findings;
+};
+
+// Schema: docs/schema/check.schema.json.
+std::string check_json(const CheckReport& report);
+// One file without others: pages as pictures, tone-mapped, the places of findings in magenta.
+std::string check_html(const CheckReport& report, const std::string& title);
+
+}  // namespace lumel
