@@ -19,7 +19,7 @@ struct CheckReport {
     std::span<const Finding> findings;
 };
 
-// Schema: docs/schema/check.schema.json.
+// Its members: docs/cli.md, "check".
 std::string check_json(const CheckReport& report);
 // One file without others: pages as pictures, tone-mapped, the places of findings in magenta.
 std::string check_html(const CheckReport& report, const std::string& title);
