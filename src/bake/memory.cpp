@@ -30,10 +30,10 @@ constexpr std::uint64_t kTexelBufferBytes = 4 + 8 + 4 + 2 * sizeof(Vec3) + 4 + 4
 constexpr std::uint64_t kLightmapBytes = 3 * sizeof(Vec3) + 1 + 4 + 15 * sizeof(float);
 // Of a thread: a block of texels with their points and sums, a wavefront of paths.
 constexpr std::uint64_t kWorkspaceBytes = 1u << 20;
-// Seams, of a texel of the page. Measured at 0.25 M texels, most of them rims: at most 0.1 samples and 0.15 texels at
-// seams for each texel (Sponza, Doom map, city). A sample takes 36 bytes, its equation 80 and its residuals 32 on each
-// of four threads; a texel at a seam 360 as it was, and four times 32 on each of four threads. None of the texel
-// buffer's workspace is in use then.
+// Seams, of a texel of the page. Measured at 0.25 M texels, most of them rims: 0.06 to 0.09 samples for each texel
+// (city, Sponza, Doom map) and 0.07 texels at seams (city); twice these is assumed of the latter. A sample takes 36
+// bytes, its equation 80 and its residuals 32 on each of four threads; a texel at a seam 360 as it was, and four times
+// 32 on each of four threads. None of the texel buffer's workspace is in use then.
 constexpr double kSeamSamplesPerTexel = 0.1, kSeamTexelsPerTexel = 0.15;
 constexpr auto kSeamBytes =
     static_cast<std::uint64_t>(kSeamSamplesPerTexel * (36 + 80 + 4 * 32) + kSeamTexelsPerTexel * (360 + 4 * 128));
