@@ -8,7 +8,6 @@
 #include "math/constants.h"
 #include "math/frame.h"
 #include "math/warp.h"
-#include "path/enclosed_points.h"
 #include "texel/ray_offset.h"
 
 namespace lumel::bench {
@@ -50,7 +49,6 @@ struct Pending {
 struct FluxIntegrator::Workspace {
     PathIntegrator::WorkspacePtr lumel;
     std::array<SurfaceStart, kSamplesPerTexel> origins;
-    std::array<std::uint8_t, kSamplesPerTexel> sides{};  // all in front
     std::array<PathStart, kWavefrontLanes> starts;
     std::array<Path, kWavefrontLanes> paths;
     std::array<std::uint32_t, kWavefrontLanes> lanes;  // of the paths still alive
@@ -75,10 +73,7 @@ FluxIntegrator::FluxIntegrator(const Transport& transport, const PathOptions& op
       choices_(choices),
       lights_(transport.scene, transport.geometry, transport.surfaces),
       halton_(choices.points == FluxPoints::halton ? options.samples : 0),
-      lumel_(transport, options),
-      any_double_sided_(std::ranges::any_of(transport.geometry.triangles, [](const WorldTriangle& triangle) {
-          return (triangle.flags & kDoubleSided) != 0;
-      })) {}
+      lumel_(transport, options) {}
 
 float FluxIntegrator::direction_pdf(std::uint32_t vertex, float cosine) const {
     if (vertex > 0) return CosineHemisphere::pdf(cosine);
@@ -303,16 +298,6 @@ void FluxIntegrator::trace_paths(std::size_t count, Workspace& w, TexelSink& sin
     }
 }
 
-// As Lumel finds them: lifted, and without those that are shut in unless all are.
-std::size_t FluxIntegrator::find_origins(const GatherSite& site, std::uint32_t key, Workspace& w) const {
-    const std::size_t n = site.points.size();
-    lumel_.surface_starts(site.points, std::span(w.sides).first(n), *w.lumel, w.origins);
-    if (!any_double_sided_) return n;
-    const auto origins = std::span(w.origins).first(n);
-    return keep_open_points(origins, enclosed_points(origins, kEnclosureReach * site.texel_size, mix32(key),
-                                                     transport_.tracer, transport_.geometry, w.rays, w.hits));
-}
-
 void FluxIntegrator::gather_texel(const GatherSite& site, Workspace& w, RadianceSums& out, std::size_t index) const {
     LUMEL_CHECK(!site.points.empty() && site.points.size() <= kSamplesPerTexel && !options_.two_sided,
                 site.points.size());
@@ -320,7 +305,7 @@ void FluxIntegrator::gather_texel(const GatherSite& site, Workspace& w, Radiance
     // Lumel's points: even and odd samples are a set each. Halton's: all are one.
     const std::uint32_t sets = choices_.points == FluxPoints::sobol ? 2 : 1;
     const std::array<std::uint32_t, 2> set_keys{key, mix32(key)};
-    const std::size_t count = find_origins(site, key, w);
+    const std::size_t count = lumel_.choose_starts(site, key, *w.lumel, w.origins);
     const auto half_of_origins = static_cast<std::uint32_t>(count / 2);
     TexelSink sink(options_);
     const bool may_stop = options_.stop == StopRule::flux;

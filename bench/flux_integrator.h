@@ -61,7 +61,6 @@ public:
     void gather_texel(const GatherSite& site, Workspace& workspace, RadianceSums& out, std::size_t index) const;
 
 private:
-    std::size_t find_origins(const GatherSite& site, std::uint32_t key, Workspace& w) const;
     void trace_paths(std::size_t count, Workspace& w, TexelSink& sink) const;
     void start_paths(std::size_t count, Workspace& w) const;
     std::size_t drop_void_paths(std::size_t count, Workspace& w, TexelSink& sink) const;
@@ -82,7 +81,6 @@ private:
     FluxLights lights_;
     HaltonTable halton_;
     PathIntegrator lumel_;  // for the origins
-    bool any_double_sided_;
 };
 
 }  // namespace lumel::bench

@@ -9,6 +9,7 @@
 #include "load.h"
 #include "path/gather_page.h"
 #include "path/light_cells.h"
+#include "path/page_footprints.h"
 #include "path/pooled_variance.h"
 
 namespace lumel::bench {
@@ -59,14 +60,12 @@ RadianceSums flux_with(const GatherJob& job, const FluxChoices& choices, Choice 
     for (auto& workspace : workspaces) workspace = integrator.make_workspace();
     RadianceSums sums;
     sums.resize(b.texels.size());
+    const PageFootprints footprints(b.texels, transport_through(b, lights), b.charts, b.atlas);
     const bool done = parallel_for(job.context, job.range.count, 16, [&](const ChunkRange& chunk) {
         std::array<SamplePoint, kSamplesPerTexel> points;
-        for (std::size_t i = job.range.first + chunk.begin; i < job.range.first + chunk.end; ++i) {
-            const std::uint32_t n = sample_points(b.texels, i, b.scene, b.geometry, b.charts, b.atlas, points);
-            const std::uint64_t id = (std::uint64_t{b.texels.y[i]} << 16) | b.texels.x[i];
-            integrator.gather_texel({std::span(points).first(n), id, b.texels.world_size[i]}, *workspaces[chunk.worker],
+        for (std::size_t i = job.range.first + chunk.begin; i < job.range.first + chunk.end; ++i)
+            integrator.gather_texel(footprints.site(static_cast<std::uint32_t>(i), points), *workspaces[chunk.worker],
                                     sums, i);
-        }
     });
     if (!done) throw std::runtime_error("cancelled");
     return sums;

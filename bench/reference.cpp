@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::uint32_t kPassSamples = 256;
 constexpr std::uint64_t kMagic =
-    0x31304645526c6d4cull;  // "LmlREF01": raise it when brute force changes what it computes
+    0x32304645526c6d4cull;  // "LmlREF02": raise it when brute force changes what it computes
 
 // Sums of TexelLight over valid samples, as doubles: I and SH of three channels.
 constexpr std::size_t kNumbers = 3 * (1 + kScoredSh);

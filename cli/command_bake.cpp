@@ -27,7 +27,7 @@ namespace {
 
 struct Options {
     std::string scene, output, max_memory, progress;
-    std::string integrator = "auto", guide = "auto", stop, denoise = "auto", seams = "on";
+    std::string integrator = "auto", guide = "auto", stop, denoise = "auto", seams = "off";
     std::uint32_t views = 2, view_samples = 32;
     std::optional<double> error, confidence, time;
     BakeOptions values;

@@ -78,7 +78,7 @@ struct BakeOptions {
     std::shared_ptr<const AtlasRecord> atlas;
     std::optional<bool> denoise;  // post/denoise.h; without a value: the preset's
     std::uint32_t dilate = 2;     // rings of texels filled around charts, 0..64
-    bool seams = true;            // both sides of a seam show the same light (docs/stages/seams.md)
+    bool seams = false;           // both sides of a seam show the same light (docs/stages/seams.md)
     // Light
     SkyOptions sky;
     SunOptions sun;

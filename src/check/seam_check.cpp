@@ -108,23 +108,25 @@ struct Sample {
     bool parted = false;
 };
 
-// What a chunk of borders finds. Rays beside the samples.
+// What a chunk of borders finds. kReaches.size() rays for each sample.
 struct Found {
     std::vector<Sample> samples;
     std::vector<Ray> rays;
 };
 
-// From beside and above one side of a seam to the other. Without length, which meets nothing, where both are on one
-// side of the line.
-Ray ray_between(const Point& a, const Point& b, float reach) {
-    const Vec3 lift = normalize_or(a.normal + b.normal, a.normal) * reach;
-    const Vec3 from = a.position + a.inward * reach + lift, way = b.position + b.inward * reach + lift - from;
+// From beside one side of a seam to beside the other, `lift` above.
+Ray ray_between(const Point& a, const Point& b, float beside, float lift) {
+    const Vec3 up = normalize_or(a.normal + b.normal, a.normal) * lift;
+    const Vec3 from = a.position + a.inward * beside + up, way = b.position + b.inward * beside + up - from;
     Ray ray;
     ray.origin = from;
     ray.direction = normalize_or(way, {0, 1, 0});
-    ray.tmax = length(way) < 0.1f * reach ? 0.0f : length(way);
+    ray.tmax = length(way);
     return ray;
 }
+
+// Half texels beside the seam: what stands on it within a lookup's reach parts it, however thick it is.
+constexpr std::array<float, 3> kReaches{1.0f, 2.0f, 3.0f};
 
 class SeamSearch {
 public:
@@ -143,7 +145,10 @@ public:
         const double texels = static_cast<double>(length(last.texels - first.texels));
         const double metres = static_cast<double>(length(last.position - first.position));
         if (!(metres > 0.0)) return;
-        const auto n = static_cast<std::uint32_t>(std::max(1.0, std::ceil(texels * options_.points_per_texel)));
+        // No border is longer than a page; a damaged file's may say so.
+        const CheckedPage& page = bake_.pages[bake_.triangles[border.triangle].page];
+        const double most = 4.0 * (static_cast<double>(page.width) + page.height);
+        const auto n = static_cast<std::uint32_t>(std::clamp(std::ceil(texels * options_.points_per_texel), 1.0, most));
         for (std::uint32_t k = 0; k < n; ++k) {
             const Point point = at(border, (static_cast<float>(k) + 0.5f) / static_cast<float>(n));
             grid_.for_each_in_cell(point.position, [&](std::uint32_t other) {
@@ -177,6 +182,7 @@ private:
         const Point b = nearest(other, a.position);
         if (static_cast<double>(length(a.position - b.position)) > options_.distance) return;
         if (static_cast<double>(dot(a.normal, b.normal)) < options_.normal_cosine) return;
+        if (dot(a.inward, b.inward) > 0.5f) return;  // layers: one lies on the other
         const CheckedTriangle &ta = bake_.triangles[border.triangle], &tb = bake_.triangles[other.triangle];
         // Around a corner of one border lies the same place of the layout.
         const double same = 0.02 + 2.0 * options_.distance * texels / length_of_border;
@@ -187,7 +193,8 @@ private:
         const double contrast = scale > 0.0 ? std::fabs(light_a - light_b) / scale : 0.0;
         if (!std::isfinite(contrast)) return;  // another check's
         out.samples.push_back({{contrast, a.position, ta.instance, tb.instance, ta.page, a.texels}, metres});
-        out.rays.push_back(ray_between(a, b, static_cast<float>(0.5 * length_of_border / std::max(texels, 1.0))));
+        const auto half_texel = static_cast<float>(0.5 * length_of_border / std::max(texels, 1.0));
+        for (const float reach : kReaches) out.rays.push_back(ray_between(a, b, reach * half_texel, half_texel));
     }
 
     const CheckedBake& bake_;
@@ -248,7 +255,8 @@ Result<SeamCheck> check_seams(const CheckedBake& bake, const SeamCheckOptions& o
             for (std::size_t i = range.begin; i < range.end; ++i) search.walk(i, found);
             std::vector<std::uint8_t> blocked(found.rays.size());
             tracer.occluded(found.rays, blocked);
-            for (std::size_t i = 0; i < blocked.size(); ++i) found.samples[i].parted = blocked[i] != 0;
+            for (std::size_t i = 0; i < blocked.size(); ++i)
+                if (blocked[i] != 0) found.samples[i / kReaches.size()].parted = true;
             parts[range.index] = std::move(found.samples);
         },
         "seams");

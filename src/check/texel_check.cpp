@@ -66,7 +66,8 @@ private:
         const float* variance = &page_.variance.data[3 * i];
         const double error =
             static_cast<double>(luminance({std::sqrt(variance[0]), std::sqrt(variance[1]), std::sqrt(variance[2])}));
-        return error > options_.noisy * std::max(light_of(page_, i), 0.01 * mean_);
+        // A variance that is no number, or below zero, is no proof.
+        return !(error <= options_.noisy * std::max(light_of(page_, i), 0.01 * mean_));
     }
 
     const CheckedPage& page_;

@@ -1,5 +1,7 @@
 #include "check/verdict.h"
 
+#include <algorithm>
+
 namespace lumel {
 namespace {
 
@@ -15,7 +17,8 @@ std::vector<Finding> judge(const SeamCheck& seams, const TexelCheck& texels, con
     const auto baked = static_cast<double>(texels.baked), filled = static_cast<double>(texels.filled);
     std::vector<TexelDefect> seam_places;
     for (const SeamDefect& d : seams.worst)
-        seam_places.push_back({d.page, static_cast<std::uint32_t>(d.texels.x), static_cast<std::uint32_t>(d.texels.y)});
+        seam_places.push_back({d.page, static_cast<std::uint32_t>(std::max(0.0f, d.texels.x)),
+                               static_cast<std::uint32_t>(std::max(0.0f, d.texels.y))});
     return {
         {"seam_p99", "contrast across seams, 99th percentile of their length", seams.open.p99, limits.seam_p99, true,
          seam_places},

@@ -93,9 +93,11 @@ Status add_instance(const LoadedScene& loaded, std::uint32_t index, CheckedBake&
             for (std::size_t k = 0; k < 3; ++k) {
                 out.position[k] = transform_point(instance.transform, mesh.positions[vertices[k]]);
                 out.uv[k] = mesh.uv1[vertices[k]];
-                if (!is_finite(out.uv[k]))
+                // No bake of ours looks up what lies beyond the rings around its charts.
+                const auto is_beyond = [](float u) { return !(u >= -1.0f && u <= 2.0f); };
+                if (is_beyond(out.uv[k].x) || is_beyond(out.uv[k].y))
                     return invalid(loaded.document->where,
-                                   "'" + instance.name + "' has a lightmap UV that is not finite", "bake again");
+                                   "'" + instance.name + "' has a lightmap UV that lies beyond its page", "bake again");
             }
             if (!has_area(out)) continue;  // no pixel shows it, and its lightmap UVs mean nothing
             set_normals(mesh, vertices, instance.transform, out);

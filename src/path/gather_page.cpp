@@ -8,42 +8,13 @@
 #include "base/check.h"
 #include "base/parallel.h"
 #include "base/try.h"
+#include "path/page_footprints.h"
 
 namespace lumel {
 
 namespace {
 
 static_assert(kBlockEdge * kBlockEdge == kMostTexelsTogether);
-
-class PageFootprints : public FootprintSource {
-public:
-    PageFootprints(const TexelBuffer& texels, const Transport& transport, const ChartSet& charts, const Atlas& atlas)
-        : texels_(texels), transport_(transport), charts_(charts), atlas_(atlas) {}
-    void read(std::size_t texel, Footprint footprint, const FootprintPart& part, TexelPoints& out) const override {
-        texel_points(texels_, texel, transport_.scene, transport_.geometry, charts_, atlas_, footprint, part, out);
-    }
-    // Where it gathers if nothing is in its way.
-    [[nodiscard]] GatherSite site(std::uint32_t i, std::array<SamplePoint, kSamplesPerTexel>& points) const {
-        const std::uint32_t n =
-            sample_points(texels_, i, transport_.scene, transport_.geometry, charts_, atlas_, points);
-        const std::uint64_t id =
-            (std::uint64_t{texels_.page} << 32) | (std::uint64_t{texels_.y[i]} << 16) | texels_.x[i];
-        const std::uint32_t first = texels_.first_triangle[i], end = texels_.first_triangle[i + 1];
-        return {std::span(points).first(n),
-                id,
-                texels_.world_size[i],
-                texels_.valid[i],
-                std::span(&texels_.triangles[first], end - first),
-                this,
-                i};
-    }
-
-private:
-    const TexelBuffer& texels_;
-    const Transport& transport_;
-    const ChartSet& charts_;
-    const Atlas& atlas_;
-};
 
 // Where the texels of a block gather.
 class BlockSites {

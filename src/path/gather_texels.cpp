@@ -72,16 +72,14 @@ void PathIntegrator::begin_texel(const GatherSite& site, Workspace& w, TexelStat
     texel.half_keys = {key, mix32(key)};
     texel.both_sides =
         options_.two_sided && (transport_.geometry.triangles[site.points[0].triangle].flags & kDoubleSided) != 0;
-    std::size_t n = site.points.size();
-    std::fill(w.sides.begin(), w.sides.end(), std::uint8_t{0});
-    surface_starts(site.points, std::span(w.sides).first(n), w, texel.surfaces);
+    const std::size_t n = texel.points =
+        texel.both_sides ? site.points.size() : choose_starts(site, key, w, texel.surfaces);
     if (texel.both_sides) {
+        std::fill(w.sides.begin(), w.sides.end(), std::uint8_t{0});
+        surface_starts(site.points, std::span(w.sides).first(n), w, texel.surfaces);
         std::fill(w.sides.begin(), w.sides.end(), std::uint8_t{1});
         surface_starts(site.points, std::span(w.sides).first(n), w, texel.back_surfaces);
-    } else {
-        n = choose_starts(site, key, w, texel.surfaces);
     }
-    texel.points = n;
     find_sunlit(std::span(texel.surfaces).first(n), false, w);
     if (texel.both_sides) find_sunlit(std::span(texel.back_surfaces).first(n), false, w);
 }
@@ -100,21 +98,34 @@ std::size_t PathIntegrator::choose_starts(const GatherSite& site, std::uint32_t 
         return finder.find({valid, triangles, site.texel_size, enclosed}, all, mix32(key + 1));
     };
     const std::size_t n = site.points.size();
-    if (static_cast<std::size_t>(std::popcount(find(n, site.valid, site.triangles).best)) == n) return n;
+    std::fill(w.sides.begin(), w.sides.end(), std::uint8_t{0});
+    surface_starts(site.points, std::span(w.sides).first(n), w, starts);
+    if (static_cast<std::size_t>(std::popcount(find(n, site.valid, site.triangles).best)) == n || !site.footprints)
+        return n;
 
     for (const auto& [footprint, whole] : kFootprints) {
-        VisibleStarts::Found found;
-        std::optional<FootprintPart> part = whole;
-        for (std::uint32_t attempt = 0; attempt <= kMostRefinements && part; ++attempt) {
-            site.footprints->read(site.texel, footprint, *part, w.points);
+        const auto read_part = [&](const FootprintPart& part) {
+            site.footprints->read(site.texel, footprint, part, w.points);
             const auto points = std::span<const SamplePoint>(w.points.at).first(w.points.count);
             surface_starts(points, std::span(w.sides).first(points.size()), w, starts);
-            found = points.empty() ? VisibleStarts::Found{} : find(points.size(), w.points.valid, w.points.triangles);
-            if (footprint == Footprint::whole && std::popcount(found.best) <= kSliver) found = {};
-            if (found.best == 0) break;
+        };
+        VisibleStarts::Found found;
+        FootprintPart found_in;
+        std::optional<FootprintPart> part = whole;
+        for (std::uint32_t attempt = 0; attempt <= kMostRefinements && part; ++attempt) {
+            read_part(*part);
+            const VisibleStarts::Found now =
+                w.points.count == 0 ? VisibleStarts::Found{} : find(w.points.count, w.points.valid, w.points.triangles);
+            const bool is_sliver = attempt == 0 && footprint == Footprint::whole && std::popcount(now.best) <= kSliver;
+            if (now.best == 0 || is_sliver) break;
+            found = now;
+            found_in = *part;
             part = part_to_refine(*part, w.points.valid, found);
+            if (!part || attempt == kMostRefinements) return keep_starts(starts.first(w.points.count), found.best);
         }
-        if (found.best != 0) return keep_starts(starts.first(w.points.count), found.best);
+        if (found.best == 0) continue;
+        read_part(found_in);  // a finer look at it found nothing
+        return keep_starts(starts.first(w.points.count), found.best);
     }
     surface_starts(site.points, std::span(w.sides).first(n), w, starts);
     return n;

@@ -91,7 +91,7 @@ struct GatherSite {
     std::uint64_t id;  // names the texel for good (page and position), whatever range, thread or shard it is baked in
     float texel_size;  // metres
     // Of texels, not of cells: which Hammersley points these are, the triangles that they lie in (ascending), and where
-    // there are others, should some of them be hidden (path/visible_starts.h).
+    // there are others, should some of them be hidden (path/visible_starts.h); null: nowhere.
     std::uint64_t valid = 0;
     std::span<const std::uint32_t> triangles = {};
     const FootprintSource* footprints = nullptr;
@@ -130,12 +130,14 @@ public:
     void surface_starts(std::span<const SamplePoint> points, std::span<const std::uint8_t> back_side,
                         Workspace& workspace, std::span<SurfaceStart> out) const;
 
+    // Starts of a texel's points that lookups show, at the front of `starts`, and their number. `key`: of random
+    // directions.
+    std::size_t choose_starts(const GatherSite& site, std::uint32_t key, Workspace& workspace,
+                              std::span<SurfaceStart> starts) const;
+
 private:
     struct TexelState;
     void begin_texel(const GatherSite& site, Workspace& workspace, TexelState& texel) const;
-    // Starts of the points that lookups show, at the front of `starts`, and their number. `key`: of random directions.
-    std::size_t choose_starts(const GatherSite& site, std::uint32_t key, Workspace& workspace,
-                              std::span<SurfaceStart> starts) const;
     // Samples first to last - 1 of a texel of the workspace. `learning`: for the guide, too. These return false where
     // cancelled.
     bool gather_samples(std::uint32_t first, std::uint32_t last, bool learning, Workspace& workspace, std::size_t texel,

@@ -8,6 +8,7 @@
 #include "math/frame.h"
 #include "math/sampler.h"
 #include "math/warp.h"
+#include "path/enclosed_points.h"
 
 namespace lumel {
 namespace {
@@ -98,14 +99,15 @@ VisibleStarts::VisibleStarts(const Tracer& tracer, const WorldGeometry& geometry
     LUMEL_CHECK(rays.size() >= 256 && hits.size() >= 256, rays.size(), hits.size());
 }
 
-// A ray from each start beyond the first few, over its hemisphere: bit i where that of start i is void.
-std::uint64_t VisibleStarts::void_rays(std::span<const SurfaceStart> starts, std::size_t first,
+// A ray from each start beyond the first few, over its hemisphere: bit i where that of start i is void within `reach`.
+std::uint64_t VisibleStarts::void_rays(std::span<const SurfaceStart> starts, std::size_t first, float reach,
                                        std::uint32_t key) const {
     for (std::size_t i = first; i < starts.size(); ++i) {
         const Sampler sampler(key, static_cast<std::uint32_t>(i));
         Ray& ray = rays_[i] = {};
         ray.origin = starts[i].origin;
         ray.direction = Frame(starts[i].normal).to_world(GatherHemisphere::sample(sampler.pair(0)));
+        ray.tmax = reach;
         ray.skip = starts[i].skip;
         ray.alpha_key = sampler.hash(1);
     }
@@ -124,9 +126,10 @@ VisibleStarts::Found VisibleStarts::find(const Points& points, std::span<const S
                                          std::uint32_t key) const {
     const std::size_t n = starts.size();
     LUMEL_CHECK(n <= kSamplesPerTexel, n);
-    std::uint64_t voids = void_rays(starts.first(std::min(n, kFewProbes)), 0, key);
+    const float reach = kEnclosureReach * points.texel_size;
+    std::uint64_t voids = void_rays(starts.first(std::min(n, kFewProbes)), 0, reach, key);
     const bool probed_all = n <= kFewProbes || voids != 0;
-    if (voids != 0 && n > kFewProbes) voids |= void_rays(starts, kFewProbes, key);
+    if (voids != 0 && n > kFewProbes) voids |= void_rays(starts, kFewProbes, reach, key);
     const std::uint64_t probed = first_bits(probed_all ? n : kFewProbes);
 
     const float lift = kLift * points.texel_size;

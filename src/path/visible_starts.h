@@ -33,11 +33,12 @@ public:
         std::uint64_t open = 0;  // all open ones
     };
     // Open are points that are not enclosed, in a component of which less than three in a hundred of the rays (one a
-    // point) are void. `key`: of random directions.
+    // point) meet a back within the reach of an enclosure: farther ones are seen from the open. `key`: of random
+    // directions.
     [[nodiscard]] Found find(const Points& points, std::span<const SurfaceStart> starts, std::uint32_t key) const;
 
 private:
-    [[nodiscard]] std::uint64_t void_rays(std::span<const SurfaceStart> starts, std::size_t first,
+    [[nodiscard]] std::uint64_t void_rays(std::span<const SurfaceStart> starts, std::size_t first, float reach,
                                           std::uint32_t key) const;
 
     const Tracer& tracer_;

@@ -25,12 +25,19 @@ struct Box {
     }
 };
 
+// Metres within which another line is the same.
+float distance_of(const BorderEdge& edge, const SeamRule& rule) {
+    const float texels = length(edge.texels_to - edge.texels_from), metres = length(edge.to - edge.from);
+    return std::min(rule.distance, rule.distance_in_texels * metres / std::max(texels, 1e-6f));
+}
+
 // A binary tree of boxes over the edges: split at the median of the widest side of the middles.
 class EdgeTree {
 public:
-    EdgeTree(std::span<const BorderEdge> edges, float margin) : order_(edges.size()) {
+    EdgeTree(std::span<const BorderEdge> edges, const SeamRule& rule) : order_(edges.size()) {
         boxes_.reserve(edges.size());
         for (const BorderEdge& edge : edges) {
+            const float margin = 0.5f * distance_of(edge, rule);
             Box box;
             for (const Vec3 p : {edge.from, edge.to}) {
                 box.add(p - Vec3{margin, margin, margin});
@@ -151,7 +158,7 @@ std::optional<std::array<double, 2>> shared_piece(const Line& a, const Line& b, 
 class SeamFinder {
 public:
     SeamFinder(std::span<const BorderEdge> edges, const SeamRule& rule)
-        : edges_(edges), rule_(rule), tree_(edges, 0.5f * rule.distance) {
+        : edges_(edges), rule_(rule), tree_(edges, rule) {
         lines_.reserve(edges.size());
         for (const BorderEdge& edge : edges) lines_.emplace_back(edge);
     }
@@ -169,7 +176,11 @@ public:
 private:
     [[nodiscard]] std::optional<Seam> between(std::uint32_t i, std::uint32_t j) const {
         const Line &a = lines_[i], &b = lines_[j];
-        const auto piece = shared_piece(a, b, double{rule_.distance});
+        // Faces on one side of the line are layers, a rug on a floor: what lies above has light of its own.
+        constexpr float kOneSide = 0.5f;
+        if (dot(edges_[i].inward, edges_[j].inward) > kOneSide) return std::nullopt;
+        const auto piece =
+            shared_piece(a, b, double{std::min(distance_of(edges_[i], rule_), distance_of(edges_[j], rule_))});
         if (!piece) return std::nullopt;
         const auto on_b = [&](double t) {
             double s = 0.0;

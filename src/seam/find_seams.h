@@ -14,6 +14,7 @@ namespace lumel {
 
 struct SeamRule {
     float distance = 1e-3f;            // metres: of two lines that are taken for one
+    float distance_in_texels = 0.1f;   // and of the texels of either: in scenes of millimetres all is within one
     float normal_cosine = 0.9396926f;  // 20 degrees: of normals of one surface
     float same_texels = 0.02f;         // texels: lookups so near each other are one
 };
@@ -24,9 +25,9 @@ struct Seam {
     float a_from = 0.0f, a_to = 0.0f, b_from = 0.0f, b_to = 0.0f;
 };
 
-// Every pair once, by ascending a < b. Pairs whose normals differ by more than the gate all along, and those that look
-// up the same texels, are left out. n log n in the number of edges, plus the pairs that are near each other. Stage
-// "seams". Error: cancelled.
+// Every pair once, by ascending a < b. Pairs whose normals differ by more than the gate all along, those that look up
+// the same texels, and those whose triangles lie on one side of the line, one on the other, are left out. n log n in
+// the number of edges, plus the pairs that are near each other. Stage "seams". Error: cancelled.
 Result<std::vector<Seam>> find_seams(std::span<const BorderEdge> edges, const SeamRule& rule, Context& context);
 
 inline Vec3 position_at(const BorderEdge& edge, float t) { return edge.from + (edge.to - edge.from) * t; }

@@ -1,6 +1,7 @@
 #include "seam/seam_samples.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/cancelled.h"
@@ -9,9 +10,13 @@
 namespace lumel {
 namespace {
 
+// How far beside the seam its rays run, in half texels: as far as a bilinear lookup carries what is changed at the
+// seam. A wall that stands on it is not seen by rays that begin inside.
+constexpr std::array<float, 3> kReaches{1.0f, 2.0f, 3.0f};
+
 struct Part {
     std::vector<SeamSample> samples;
-    std::vector<Ray> rays;  // one per sample; without length where both sides are the same
+    std::vector<Ray> rays;  // kReaches.size() per sample
     std::vector<std::uint8_t> blocked;
     double metres = 0.0;
     std::uint64_t hidden = 0;
@@ -45,19 +50,21 @@ void sample_seam(std::span<const BorderEdge> edges, const Seam& seam, const Seam
         if (dot(normal_a, normal_b) < rule.normal_cosine) continue;
         const Vec3 lift = normalize_or(normal_a + normal_b, normal_a) * reach;
         part.samples.push_back({{a.page, texels_at(a, on_a)}, {b.page, texels_at(b, on_b)}, weight});
-        part.rays.push_back(
-            ray_across(position_at(a, on_a) + a.inward * reach + lift, position_at(b, on_b) + b.inward * reach + lift));
-        // Faces on one side of the line lie on each other: nothing is between them.
-        if (part.rays.back().tmax < 0.1f * reach) part.rays.back().tmax = 0.0f;
+        for (const float halves : kReaches)
+            part.rays.push_back(ray_across(position_at(a, on_a) + a.inward * (halves * reach) + lift,
+                                           position_at(b, on_b) + b.inward * (halves * reach) + lift));
     }
 }
 
 void drop_hidden(const Tracer& tracer, Part& part) {
     part.blocked.resize(part.rays.size());
-    tracer.occluded(part.rays, part.blocked);  // those without length count as free
+    tracer.occluded(part.rays, part.blocked);
     std::size_t kept = 0;
-    for (std::size_t i = 0; i < part.samples.size(); ++i)
-        if (part.blocked[i] == 0) part.samples[kept++] = part.samples[i];
+    for (std::size_t i = 0; i < part.samples.size(); ++i) {
+        const auto blocked = std::span(part.blocked).subspan(i * kReaches.size(), kReaches.size());
+        if (std::ranges::none_of(blocked, [](std::uint8_t b) { return b != 0; }))
+            part.samples[kept++] = part.samples[i];
+    }
     part.hidden = part.samples.size() - kept;
     part.samples.resize(kept);
     part.rays = {};

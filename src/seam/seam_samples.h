@@ -30,8 +30,9 @@ struct SeamSamples {
 };
 
 // `per_texel`: samples in a texel of the denser side. Samples whose normals are not within the rule's gate are left
-// out, and those where a surface stands between the two sides: a ray from half a texel (of the denser side) beside and
-// above the seam to the other side meets it. Stage "seams". Error: cancelled.
+// out, and those where a surface stands between the two sides: a ray half a texel (of the denser side) above the seam,
+// from a half, one or one and a half texels beside it to as far on the other side, meets it. Stage "seams". Error:
+// cancelled.
 Result<SeamSamples> make_seam_samples(std::span<const BorderEdge> edges, std::span<const Seam> seams,
                                       const SeamRule& rule, float per_texel, const Tracer& tracer, Context& context);
 
