@@ -13,7 +13,8 @@ namespace {
 
 // Three tiles of different instances, at height 0 unless said otherwise: one of 2 m, beside it two of 1 m, whose edges
 // meet its long one in a T-junction. Seams: 2 m along the long edge and 1 m between the small ones.
-Scene tiles(bool wall = false, float step = 0.0f, float width = 1.0f) {
+// `thickness`: of the wall, metres; 0: a sheet.
+Scene tiles(bool wall = false, float step = 0.0f, float width = 1.0f, float thickness = 0.0f) {
     test::SceneBuilder builder;
     const std::uint32_t grey = builder.material({0.5f, 0.5f, 0.5f}, {}, true);
     const auto tile = [&](const char* name, Vec3 origin, Vec3 u, Vec3 v) {
@@ -22,7 +23,11 @@ Scene tiles(bool wall = false, float step = 0.0f, float width = 1.0f) {
     tile("long", {0, 0, 0}, {0, 0, 2}, {width, 0, 0});
     tile("near", {width, step, 0}, {0, 0, 1}, {width, 0, 0});
     tile("far", {width, step, 1}, {0, 0, 1}, {width, 0, 0});
-    if (wall) tile("wall", {1, 0, 0}, {0, 0, 2}, {0, 1, 0});
+    if (wall && thickness == 0.0f) tile("wall", {1, 0, 0}, {0, 0, 2}, {0, 1, 0});
+    if (wall && thickness > 0.0f)
+        builder.object("wall", grey, [&](Mesh& mesh) {
+            test::add_box(mesh, {1 - 0.5f * thickness, 0, 0}, {1 + 0.5f * thickness, 1, 2}, false);
+        });
     return builder.build();
 }
 
@@ -102,12 +107,17 @@ TEST(FindSeams, LeavesOutWhatIsFartherThanTheRuleOrTurnedAway) {
 }
 
 TEST(SeamSamples, AreLeftOutWhereAWallStandsOnTheSeam) {
-    Layout open(tiles()), parted(tiles(true));
-    const SeamSamples all = open.samples(), some = parted.samples();
+    Layout open(tiles());
+    const SeamSamples all = open.samples();
     EXPECT_EQ(all.hidden, 0u);
-    // 2 m of 3 stand below the wall, at two samples for each of 24 texels.
-    EXPECT_GE(some.hidden, 2u * 48u);
-    EXPECT_LT(some.samples.size(), all.samples.size() / 2);
+    // Thicker ones hide what lookups carry beside the seam.
+    for (const float texels : {0.0f, 0.7f, 1.5f, 2.9f}) {
+        Layout parted(tiles(true, 0.0f, 1.0f, texels / 24.0f));
+        const SeamSamples some = parted.samples();
+        // 2 m of 3 stand below the wall, at two samples for each of 24 texels.
+        EXPECT_GE(some.hidden, 2u * 48u) << texels;
+        EXPECT_LT(some.samples.size(), all.samples.size() / 2) << texels;
+    }
 }
 
 TEST(BlendSeams, MakesBothSidesEqualAndLeavesTheRest) {
