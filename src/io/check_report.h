@@ -1,4 +1,4 @@
-// What `lumel check` leaves: check.json for programs, check.html with pictures for people.
+// What `lumel check` prints for programs (JSON) and writes for people (an HTML page with pictures).
 #pragma once
 
 #include <filesystem>

@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+# lumel check: exit codes, JSON, the page, and folders that are no bakes.
+#   check_test.sh LUMEL
+# shellcheck source=common.sh
+. "$(dirname "$0")/common.sh"
+
+expect 0 '' bake ok.gltf -o out --texels-per-metre 16 --samples 64 --views 0 --sky 1,1,1 --preset preview
+expect 0 '' check out
+grep -q 'not_finite\|hold no number' out.txt || complain "check says nothing of what it looked at: $(cat out.txt)"
+expect 0 '' check out --json --html page.html
+grep -q '"passed": *true' out.txt || complain "the JSON does not say that all is well: $(cat out.txt)"
+grep -qi '<html' page.html || complain 'there is no page'
+# No bake is without any noise.
+expect 1 '' check out --max-unconverged 0 --noisy 0.000001
+expect 1 'empty' check empty
+mkdir empty
+expect 1 'empty' check empty
+cp -r out cut
+head -c 300 out/lightmap_0.exr >cut/lightmap_0.exr
+expect 1 'cut/' check cut
+cp -r out other
+expect 0 '' bake ok.gltf -o smaller --resolution 32x32 --samples 1 --views 0 --sky 1,1,1
+cp smaller/lightmap_0.exr other/
+expect 1 'other/' check other
+expect 2 '' check out --max-overlaps many
+
+finish
