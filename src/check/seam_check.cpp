@@ -52,8 +52,7 @@ public:
         cell_ = std::max(8.0 * distance, sum / static_cast<double>(std::max<std::size_t>(1, borders.size())));
         for (std::uint32_t b = 0; b < borders.size(); ++b) insert(b);
         std::ranges::sort(entries_);
-        const auto duplicates = std::ranges::unique(entries_);
-        entries_.erase(duplicates.begin(), duplicates.end());
+        entries_.erase(std::unique(entries_.begin(), entries_.end()), entries_.end());
     }
 
     [[nodiscard]] Vec3 from(const Border& b) const { return bake_.triangles[b.triangle].position[b.corner]; }
