@@ -103,20 +103,21 @@ std::size_t PathIntegrator::choose_starts(const GatherSite& site, std::uint32_t 
     if (static_cast<std::size_t>(std::popcount(find(n, site.valid, site.triangles).best)) == n || !site.footprints)
         return n;
 
-    for (const auto& [footprint, whole] : kFootprints) {
+    for (const FootprintToTry& place : kFootprints) {
         const auto read_part = [&](const FootprintPart& part) {
-            site.footprints->read(site.texel, footprint, part, w.points);
+            site.footprints->read(site.texel, place.footprint, part, w.points);
             const auto points = std::span<const SamplePoint>(w.points.at).first(w.points.count);
             surface_starts(points, std::span(w.sides).first(points.size()), w, starts);
         };
         VisibleStarts::Found found;
         FootprintPart found_in;
-        std::optional<FootprintPart> part = whole;
+        std::optional<FootprintPart> part = place.part;
         for (std::uint32_t attempt = 0; attempt <= kMostRefinements && part; ++attempt) {
             read_part(*part);
             const VisibleStarts::Found now =
                 w.points.count == 0 ? VisibleStarts::Found{} : find(w.points.count, w.points.valid, w.points.triangles);
-            const bool is_sliver = attempt == 0 && footprint == Footprint::whole && std::popcount(now.best) <= kSliver;
+            const bool is_sliver =
+                attempt == 0 && place.footprint == Footprint::whole && std::popcount(now.best) <= kSliver;
             if (now.best == 0 || is_sliver) break;
             found = now;
             found_in = *part;
