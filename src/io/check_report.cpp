@@ -54,7 +54,7 @@ std::string value_text(const Finding& f, double value) {
     return text.data();
 }
 
-std::string limit_text(const Finding& f) { return f.limit < 0.0 ? "none" : value_text(f, f.limit); }
+std::string limit_text(const Finding& f) { return f.limit < 0.0 ? "any" : value_text(f, f.limit); }
 
 // Frames of 7 x 7 texels around places, so that a single one is seen.
 void mark(std::span<const Finding> findings, std::uint32_t page, std::uint32_t width, std::uint32_t height,
