@@ -8,6 +8,7 @@
 #include "io/output_folder.h"
 #include "io/page_files.h"
 #include "support/failing_files.h"
+#include "support/folder_contents.h"
 #include "support/temporary_folder.h"
 
 namespace lumel {
@@ -16,21 +17,10 @@ namespace {
 namespace fs = std::filesystem;
 using Names = std::set<std::string>;
 using test::in_a_process;
+using test::names_in;
+using test::put;
 using test::TemporaryFolder;
-
-void put(const fs::path& path, const std::string& text) { std::ofstream(path) << text; }
-
-std::string text_of(const fs::path& path) {
-    std::string text;
-    std::getline(std::ifstream(path), text, '\0');
-    return text;
-}
-
-Names names_in(const fs::path& folder) {
-    Names out;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) out.insert(entry.path().filename());
-    return out;
-}
+using test::text_of;
 
 FileSetKind tiles() {
     return {"set of tiles", "tiles", "\"Tiler\"",

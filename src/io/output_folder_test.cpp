@@ -7,6 +7,7 @@
 #include <set>
 
 #include "support/failing_files.h"
+#include "support/folder_contents.h"
 #include "support/temporary_folder.h"
 
 namespace lumel {
@@ -16,21 +17,10 @@ namespace fs = std::filesystem;
 using test::in_a_process;
 using test::kDied;
 using test::kNever;
+using test::names_in;
+using test::put;
 using test::TemporaryFolder;
-
-void put(const fs::path& path, const std::string& text) { std::ofstream(path) << text; }
-
-std::string text_of(const fs::path& path) {
-    std::string text;
-    std::getline(std::ifstream(path), text, '\0');
-    return text;
-}
-
-std::set<std::string> names_in(const fs::path& folder) {
-    std::set<std::string> out;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) out.insert(entry.path().filename());
-    return out;
-}
+using test::text_of;
 
 using Names = std::set<std::string>;
 
