@@ -62,7 +62,6 @@ RadianceSums gather_seed_samples(const BenchScene& bench, std::uint32_t samples,
         std::array<Vec3, kWavefrontLanes> light;
         std::array<std::uint8_t, kWavefrontLanes> valid;
         Vec3 sum{};
-        std::uint32_t count = 0;
         for (std::uint32_t base = 0; base < samples; base += kWavefrontLanes) {
             const std::uint32_t lanes = std::min<std::uint32_t>(kWavefrontLanes, samples - base);
             for (std::uint32_t lane = 0; lane < lanes; ++lane)
@@ -70,10 +69,7 @@ RadianceSums gather_seed_samples(const BenchScene& bench, std::uint32_t samples,
             const auto batch = std::span<const PathStart>(starts).first(lanes);
             integrator.gather_irradiance(batch, *workspaces[range.worker], std::span(light).first(lanes),
                                          std::span(valid).first(lanes));
-            for (std::uint32_t lane = 0; lane < lanes; ++lane) {
-                sum += light[lane];
-                count += valid[lane];
-            }
+            for (std::uint32_t lane = 0; lane < lanes; ++lane) sum += light[lane];
         }
         // Back faces are black to the article's rays: they are in the mean.
         sums.layers[range.begin][static_cast<std::size_t>(Layer::direct)].irradiance =
