@@ -109,12 +109,12 @@ void FluxIntegrator::start_paths(std::size_t count, Workspace& w) const {
 }
 
 // "Ignore contribution from back face rays."
-std::size_t FluxIntegrator::drop_void_paths(std::size_t count, Workspace& w, TexelSink& sink) const {
+std::size_t FluxIntegrator::drop_paths_to_backs(std::size_t count, Workspace& w, TexelSink& sink) const {
     std::size_t alive = 0;
     for (std::uint32_t lane = 0; lane < count; ++lane) {
         const Hit hit = w.hits[lane];
         if (!hit.missed() && hit.back_face && !(transport_.geometry.triangles[hit.triangle].flags & kDoubleSided)) {
-            sink.void_path(lane, 1.0f);
+            sink.back(lane, hit.t, 1.0f);
             continue;
         }
         sink.free_path(lane, w.paths[lane].direction, w.paths[lane].pdf, hit.missed() ? kInfiniteDistance : hit.t,
@@ -260,7 +260,7 @@ bool FluxIntegrator::go_on(std::uint32_t lane, std::uint32_t vertex, Workspace& 
 
 void FluxIntegrator::trace_paths(std::size_t count, Workspace& w, TexelSink& sink) const {
     start_paths(count, w);
-    std::size_t alive = drop_void_paths(count, w, sink);
+    std::size_t alive = drop_paths_to_backs(count, w, sink);
     for (std::uint32_t lane = 0; lane < count; ++lane) sample_lights(lane, 0, w);
     resolve_lights(0, w, sink);
 

@@ -24,13 +24,12 @@ struct FinePoint {
     std::uint32_t chart;
     Vec3 lifted;
     SurfaceStart start;
-    std::array<double, kHalves> sum{}, count{};
-    double traced = 0.0;
+    std::array<double, kHalves> sum{}, traced{};
+    double met_back = 0.0;
     bool joined_right = false, joined_down = false;  // whether it sees that neighbour of its chart
 
-    // Void paths leave the count (docs/conventions.md, "The hemisphere of a texel").
-    [[nodiscard]] bool is_void() const { return 2.0 * (count[0] + count[1]) < traced; }
-    [[nodiscard]] double mean() const { return (sum[0] + sum[1]) / std::max(1.0, count[0] + count[1]); }
+    [[nodiscard]] bool is_hidden() const { return 2.0 * met_back > traced[0] + traced[1]; }
+    [[nodiscard]] double mean() const { return (sum[0] + sum[1]) / std::max(1.0, traced[0] + traced[1]); }
 };
 
 class FineGrid {
@@ -48,7 +47,7 @@ public:
         join_neighbours();
     }
 
-    // Points more than half of whose paths are void are not visible: they are left out.
+    // Points more than half of whose paths meet backs first are inside something: they are left out.
     void light(std::uint32_t paths) {
         PathOptions options;
         options.samples = paths;
@@ -59,7 +58,7 @@ public:
             light_texel(range.begin, paths, integrator, *workspaces[range.worker]);
         });
         for (const FinePoint& p : points_)
-            if (p.is_void()) at_[std::size_t{p.y} * width_ + p.x] = kNone;
+            if (p.is_hidden()) at_[std::size_t{p.y} * width_ + p.x] = kNone;
     }
 
     [[nodiscard]] LeakReference evaluate() const {
@@ -67,7 +66,7 @@ public:
         double sum = 0.0, squares = 0.0;
         std::size_t visible = 0;
         for (const FinePoint& p : points_) {
-            if (p.is_void()) continue;
+            if (p.is_hidden()) continue;
             sum += p.mean();
             ++visible;
         }
@@ -79,7 +78,7 @@ public:
             for (std::uint32_t k = first_[i]; k < first_[i + 1]; ++k)
                 for (std::size_t half = 0; half < kHalves; ++half) {
                     total[half] += points_[k].sum[half];
-                    count[half] += points_[k].count[half];
+                    count[half] += points_[k].traced[half];
                 }
             const double difference = total[0] / std::max(1.0, count[0]) - total[1] / std::max(1.0, count[1]);
             squares += 0.25 * difference * difference;
@@ -164,7 +163,7 @@ private:
         if (n == 0) return;
         std::array<PathStart, kWavefrontLanes> starts;
         std::array<Vec3, kWavefrontLanes> light;
-        std::array<std::uint8_t, kWavefrontLanes> valid;
+        std::array<std::uint8_t, kWavefrontLanes> met_back;
         for (std::uint32_t half = 0; half < kHalves; ++half) {
             const std::uint32_t key = mix32(static_cast<std::uint32_t>(texel) * kHalves + half + 1);
             for (std::uint32_t base = 0; base < paths / kHalves; base += kWavefrontLanes) {
@@ -172,12 +171,12 @@ private:
                     const SurfaceStart& start = points_[first + (base + lane) % n].start;
                     starts[lane] = {start.origin, start.normal, key, base + lane, start.skip};
                 }
-                integrator.gather_irradiance(starts, workspace, light, valid);
+                integrator.gather_irradiance(starts, workspace, light, met_back);
                 for (std::uint32_t lane = 0; lane < kWavefrontLanes; ++lane) {
                     FinePoint& p = points_[first + (base + lane) % n];
                     p.sum[half] += static_cast<double>(luminance(light[lane]));
-                    p.count[half] += valid[lane];
-                    p.traced += 1.0;
+                    p.traced[half] += 1.0;
+                    p.met_back += met_back[lane];
                 }
             }
         }

@@ -60,18 +60,15 @@ RadianceSums gather_seed_samples(const BenchScene& bench, std::uint32_t samples,
         const std::uint32_t key = mix32(static_cast<std::uint32_t>(range.begin) + 1);
         std::array<PathStart, kWavefrontLanes> starts;
         std::array<Vec3, kWavefrontLanes> light;
-        std::array<std::uint8_t, kWavefrontLanes> valid;
         Vec3 sum{};
         for (std::uint32_t base = 0; base < samples; base += kWavefrontLanes) {
             const std::uint32_t lanes = std::min<std::uint32_t>(kWavefrontLanes, samples - base);
             for (std::uint32_t lane = 0; lane < lanes; ++lane)
                 starts[lane] = {start.origin, start.normal, key, base + lane, start.skip};
             const auto batch = std::span<const PathStart>(starts).first(lanes);
-            integrator.gather_irradiance(batch, *workspaces[range.worker], std::span(light).first(lanes),
-                                         std::span(valid).first(lanes));
+            integrator.gather_irradiance(batch, *workspaces[range.worker], std::span(light).first(lanes));
             for (std::uint32_t lane = 0; lane < lanes; ++lane) sum += light[lane];
         }
-        // Back faces are black to the article's rays: they are in the mean.
         sums.layers[range.begin][static_cast<std::size_t>(Layer::direct)].irradiance =
             sum * (1.0f / static_cast<float>(samples));
         sums.count[range.begin] = sums.traced[range.begin] = samples;

@@ -277,7 +277,7 @@ Status SurfaceCells::solve(std::span<const CellGather> gathers, std::span<const 
     std::vector<Vec3> direct(size());
     for (std::size_t i = 0; i < size(); ++i) {
         const bool sound = gathers[i].count > 0 && is_finite(gathers[i].direct);
-        if (!sound || 2 * gathers[i].count <= gathers[i].traced) usable_[i] = 0;
+        if (!sound || 2 * gathers[i].open <= gathers[i].traced) usable_[i] = 0;
         if (sound) direct[i] = gathers[i].direct;
     }
     irradiance_ = direct;

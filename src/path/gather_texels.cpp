@@ -1,6 +1,6 @@
 // Based on: O'Donnell 2018, "Precomputed Global Illumination in Frostbite" (sample points per texel, validity by back
 // faces, the stop rule). Differs from it: Owen-scrambled Sobol points instead of rotated Halton; vertex normals; area
-// lights and sky are combined by MIS; void paths leave the count too; first rays may be guided.
+// lights and sky are combined by MIS; first rays may be guided.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -100,8 +100,8 @@ std::size_t PathIntegrator::choose_starts(const GatherSite& site, std::uint32_t 
     const std::size_t n = site.points.size();
     std::fill(w.sides.begin(), w.sides.end(), std::uint8_t{0});
     surface_starts(site.points, std::span(w.sides).first(n), w, starts);
-    if (static_cast<std::size_t>(std::popcount(find(n, site.valid, site.triangles).best)) == n || !site.footprints)
-        return n;
+    const VisibleStarts::Points usual{site.valid, site.triangles, site.texel_size};
+    if (!site.footprints || finder.all_open(usual, starts.first(n), mix32(key + 1))) return n;
 
     for (const FootprintToTry& place : kFootprints) {
         const auto read_part = [&](const FootprintPart& part) {

@@ -114,12 +114,14 @@ public:
     static constexpr bool kFromCell = false, kSunsKnown = false, kMayBeGuided = false;
 
     IrradianceSink(const PathOptions& options, std::span<const PathStart> starts, std::span<Vec3> irradiance,
-                   std::span<std::uint8_t> valid)
-        : options_(options), starts_(starts), irradiance_(irradiance), valid_(valid) {
+                   std::span<std::uint8_t> met_back)
+        : options_(options), starts_(starts), irradiance_(irradiance), met_back_(met_back) {
         std::fill(irradiance.begin(), irradiance.end(), Vec3{});
-        std::fill(valid.begin(), valid.end(), std::uint8_t{1});
+        std::fill(met_back.begin(), met_back.end(), std::uint8_t{0});
     }
-    void void_path(std::uint32_t lane, float) { valid_[lane] = 0; }
+    void back(std::uint32_t lane, float, float) {
+        if (!met_back_.empty()) met_back_[lane] = 1;
+    }
     void free_path(std::uint32_t, Vec3, float, float, bool) {}
     void light(std::uint32_t lane, Layer of, Vec3 direction, Vec3 value) {
         const auto layer = static_cast<std::size_t>(of);
@@ -132,14 +134,15 @@ private:
     const PathOptions& options_;
     std::span<const PathStart> starts_;
     std::span<Vec3> irradiance_;
-    std::span<std::uint8_t> valid_;
+    std::span<std::uint8_t> met_back_;
 };
 
 }  // namespace
 
 void PathIntegrator::gather_irradiance(std::span<const PathStart> starts, Workspace& workspace,
-                                       std::span<Vec3> irradiance, std::span<std::uint8_t> valid) const {
-    IrradianceSink sink(options_, starts, irradiance, valid);
+                                       std::span<Vec3> irradiance, std::span<std::uint8_t> met_back) const {
+    LUMEL_CHECK(met_back.empty() || met_back.size() >= starts.size(), met_back.size(), starts.size());
+    IrradianceSink sink(options_, starts, irradiance, met_back);
     trace_paths(starts, workspace, sink, {});
 }
 

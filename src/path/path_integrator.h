@@ -2,10 +2,9 @@
 // wavefronts of paths. Without surface cells it is brute force, the truth that all else is measured against.
 //
 // Which rays a texel sends (docs/conventions.md, "The hemisphere of a texel"): the upper hemisphere of the vertex
-// normal, with density (1/2 + cos)/(2 pi) unless they are guided, from sample points spread over the texel. A path
-// whose first ray meets the back of a single-sided surface is void: what it would have met leaves the sums, and it
-// leaves the count of all layers and moments. Light that is sampled at its start (which another direction reaches)
-// stays in the sums: both ways to sample the same light have one normaliser.
+// normal, with density (1/2 + cos)/(2 pi) unless they are guided, from the sample points of the texel that lookups
+// show. Backs of single-sided surfaces are black. Texels that see little else lie inside or below something, and are
+// invalid.
 #pragma once
 
 #include <array>
@@ -121,10 +120,10 @@ public:
     void gather_cell(const GatherSite& site, bool back, Workspace& workspace, CellGather& out,
                      std::span<CellLink> links) const;
 
-    // Irradiance I about the start's normal of each path (at most kWavefrontLanes), all included layers; void paths
-    // give valid = 0: divide the sum over all paths by the number of valid ones. For pictures: `lumel render`.
+    // Irradiance I about the start's normal of each path (at most kWavefrontLanes), all included layers. For pictures:
+    // `lumel render`. `met_back`: empty, or 1 where the first ray met the back of a single-sided surface.
     void gather_irradiance(std::span<const PathStart> starts, Workspace& workspace, std::span<Vec3> irradiance,
-                           std::span<std::uint8_t> valid) const;
+                           std::span<std::uint8_t> met_back = {}) const;
 
     // Lifts points off their surfaces: batch form, for the visibility test of smooth positions.
     void surface_starts(std::span<const SamplePoint> points, std::span<const std::uint8_t> back_side,

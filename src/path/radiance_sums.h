@@ -23,7 +23,7 @@ enum class Layer : std::uint8_t { direct, sky, indirect };
 inline constexpr std::size_t kLayerCount = 3;
 inline constexpr std::array<const char*, kLayerCount> kLayerNames{"direct", "sky", "indirect"};
 
-// Per texel, SoA; index = texel of the TexelBuffer. All are means (already divided by the count of valid samples).
+// Per texel, SoA; index = texel of the TexelBuffer. All are means over the samples traced.
 struct RadianceSums {
     std::vector<std::array<LayerMoments, kLayerCount>> layers;
     // Of the mean of the total irradiance per channel. As traced: as if samples were independent, an upper estimate;
@@ -32,8 +32,9 @@ struct RadianceSums {
     std::vector<Vec3> half_difference;  // of the means of even and odd samples, which are spread evenly each for itself
     std::vector<float> sky_visibility;  // cosine-weighted share of directions that reach the sky, 0..1
     std::vector<float> ambient_occlusion;  // cosine-weighted share free within --ao-distance, 0..1 (1 = open)
-    std::vector<Vec3> bent_normal;      // mean free direction, cosine-weighted, not normalised: |.| <= 1 but for noise
-    std::vector<std::uint32_t> count;   // valid samples, whose gather ray met no back face; guided, as estimated
+    std::vector<Vec3> bent_normal;  // mean free direction, cosine-weighted, not normalised: |.| <= 1 but for noise
+    std::vector<std::uint32_t>
+        count;  // samples whose gather ray met no back of a single-sided surface; guided, as estimated
     std::vector<std::uint32_t> traced;  // samples traced
     void resize(std::size_t texels);
     void reserve(std::size_t texels);

@@ -49,7 +49,7 @@ private:
 struct Scratch {
     PathIntegrator::WorkspacePtr workspace;
     std::array<SamplePoint, kWavefrontLanes> points;
-    std::array<std::uint8_t, kWavefrontLanes> front_side{}, valid{};
+    std::array<std::uint8_t, kWavefrontLanes> front_side{};
     std::array<SurfaceStart, kWavefrontLanes> surface;
     std::array<PathStart, kWavefrontLanes> starts;
     std::array<Vec3, kWavefrontLanes> irradiance;
@@ -67,7 +67,7 @@ bool is_sealed(const ChartPoints& points, std::uint32_t key, const PathIntegrato
         integrator.surface_starts(s.points, s.front_side, *s.workspace, s.surface);
         for (std::uint32_t i = 0; i < kWavefrontLanes; ++i)
             s.starts[i] = {s.surface[i].origin, s.surface[i].normal, key, base + i, s.surface[i].skip};
-        integrator.gather_irradiance(s.starts, *s.workspace, s.irradiance, s.valid);
+        integrator.gather_irradiance(s.starts, *s.workspace, s.irradiance);
         for (const Vec3& light : s.irradiance) found += light.x + light.y + light.z > 0.0f ? 1 : 0;
         if (found > kSealedPathsThatFind) return false;
     }

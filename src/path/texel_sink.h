@@ -28,14 +28,10 @@ public:
         starts_ = starts;
         sh_scale_ = sh_scale;
         wavefront_ = {};
-        for (std::size_t lane = 0; lane < starts.size(); ++lane) {
-            sample_[lane] = {};
-            void_[lane] = 0.0f;
-        }
+        for (std::size_t lane = 0; lane < starts.size(); ++lane) sample_[lane] = {};
     }
 
-    // `weight`: density of its first ray without a guide over the density it was drawn with.
-    void void_path(std::uint32_t lane, float weight) { void_[lane] = weight; }
+    void back(std::uint32_t, float, float weight) { backs_ += static_cast<double>(weight); }
 
     void light(std::uint32_t lane, Layer of, Vec3 direction, Vec3 value) {
         const auto layer = static_cast<std::size_t>(of);
@@ -67,18 +63,14 @@ public:
                 layers_[layer].irradiance[c] += static_cast<double>(wavefront_[layer].irradiance[c]);
             }
         for (std::size_t lane = 0; lane < starts_.size(); ++lane) {
-            // Without a guide 1 or 0. With one the share of void paths is estimated by their weights.
-            const double counts = 1.0 - static_cast<double>(void_[lane]);
-            count_ += counts;
-            squared_counts_ += counts * counts;
             Half& half = halves_[traced_ & 1u];
-            half.count += counts;
+            ++half.traced;
             for (std::size_t c = 0; c < 3; ++c) {
                 const auto value = static_cast<double>(sample_[lane][c]);
                 half.sum[c] += value;
-                channels_[c].add(value, counts);
+                channels_[c].add(value);
             }
-            luminance_.add(static_cast<double>(luminance(sample_[lane])), counts);
+            luminance_.add(static_cast<double>(luminance(sample_[lane])));
             ++traced_;
         }
     }
@@ -89,24 +81,24 @@ public:
     [[nodiscard]] TexelProgress progress() const {
         TexelProgress out;
         out.samples = traced_;
-        out.valid = halves_[0].count > 0.0 && halves_[1].count > 0.0 && 2.0 * count_ > traced_;
+        out.valid = halves_[1].traced > 0 && 2.0 * backs_ < traced_;
         if (!out.valid) return out;
-        out.mean = luminance_.mean(count_);
+        out.mean = luminance_.mean(traced_);
         out.half_difference = luminance_of(halves_[0]) - luminance_of(halves_[1]);
         return out;
     }
 
     // Frostbite's rule on the texel's own luminance.
     [[nodiscard]] bool converged(double relative_error) const {
-        if (count_ < 2.0) return false;
-        return std::sqrt(luminance_.variance(counts())) <= relative_error * luminance_.mean(count_);
+        if (traced_ < 2) return false;
+        return std::sqrt(luminance_.variance(traced_)) <= relative_error * luminance_.mean(traced_);
     }
 
     void store(RadianceSums& out, std::size_t index) const {
         out.traced[index] = traced_;
-        out.count[index] = count_ > 0.0 ? static_cast<std::uint32_t>(count_ + 0.5) : 0;
-        if (out.count[index] == 0) return;
-        const double inverse = 1.0 / count_;
+        out.count[index] = static_cast<std::uint32_t>(std::max(0.0, traced_ - backs_) + 0.5);
+        if (traced_ == 0) return;
+        const double inverse = 1.0 / traced_;
         for (std::size_t layer = 0; layer < kLayerCount; ++layer) {
             LayerMoments& moments = out.layers[index][layer];
             for (std::size_t c = 0; c < 3; ++c) {
@@ -116,7 +108,7 @@ public:
             }
         }
         for (std::size_t c = 0; c < 3; ++c) {
-            out.variance[index][c] = static_cast<float>(channels_[c].variance(counts()));
+            out.variance[index][c] = static_cast<float>(channels_[c].variance(traced_));
             out.half_difference[index][c] = half_difference(c, out.variance[index][c]);
             out.bent_normal[index][c] = static_cast<float>(bent_[c] * inverse);
         }
@@ -131,44 +123,34 @@ private:
         std::array<Number, 3> irradiance{};
     };
 
-    // Of the v_i by which paths count: their sum, that of their squares; their number.
-    struct Counts {
-        double sum, squares, traced;
-    };
-    [[nodiscard]] Counts counts() const { return {count_, squared_counts_, static_cast<double>(traced_)}; }
-
-    // Moments of samples x_i over all paths, which count as v_i (a void one as nothing): the mean is sum x / sum v.
     class Moments {
     public:
-        void add(double x, double counts) {
+        void add(double x) {
             sum_ += x;
             squares_ += x * x;
-            counted_ += x * counts;
         }
-        [[nodiscard]] double mean(double count) const { return sum_ / count; }
-        // Of that mean, by the residuals x - mean v (Cochran 1977, ch. 6); without void paths the familiar one.
-        [[nodiscard]] double variance(const Counts& v) const {
-            if (v.sum < 2.0) return 0.0;
-            const double m = mean(v.sum);
-            const double residuals = std::max(0.0, squares_ - 2.0 * m * counted_ + m * m * v.squares);
-            return residuals / (v.sum * v.sum) * (v.traced / (v.traced - 1.0));
+        [[nodiscard]] double mean(double n) const { return sum_ / n; }
+        // Of that mean.
+        [[nodiscard]] double variance(double n) const {
+            if (n < 2.0) return 0.0;
+            return std::max(0.0, squares_ - sum_ * sum_ / n) / (n * (n - 1.0));
         }
 
     private:
-        double sum_ = 0.0, squares_ = 0.0, counted_ = 0.0;
+        double sum_ = 0.0, squares_ = 0.0;
     };
 
     // Where a half has no sample that counts it is unknown: what independent samples of that variance would give.
     [[nodiscard]] float half_difference(std::size_t c, float variance) const {
-        if (halves_[0].count <= 0.0 || halves_[1].count <= 0.0) return 2.0f * std::sqrt(variance);
+        if (halves_[1].traced == 0) return 2.0f * std::sqrt(variance);
         return static_cast<float>(halves_[0].mean(c) - halves_[1].mean(c));
     }
 
     // Every other sample, from the first or the second on.
     struct Half {
         std::array<double, 3> sum{};
-        double count = 0.0;
-        [[nodiscard]] double mean(std::size_t c) const { return sum[c] / count; }
+        std::uint32_t traced = 0;
+        [[nodiscard]] double mean(std::size_t c) const { return sum[c] / traced; }
     };
 
     static double luminance_of(const Half& half) {
@@ -182,7 +164,6 @@ private:
     float sh_scale_ = 1.0f;
     std::span<const PathStart> starts_;
     std::array<Vec3, kWavefrontLanes> sample_{};
-    std::array<float, kWavefrontLanes> void_{};
     std::array<LayerSums<float>, kLayerCount> wavefront_{};
     std::array<LayerSums<double>, kLayerCount> layers_{};
     std::array<Moments, 3> channels_{};
@@ -190,7 +171,7 @@ private:
     std::array<Half, 2> halves_{};
     std::array<double, 3> bent_{};
     double sky_visibility_ = 0.0, open_ = 0.0;
-    double count_ = 0.0, squared_counts_ = 0.0;
+    double backs_ = 0.0;  // samples that met the back of a single-sided surface first, as their share is estimated
     std::uint32_t traced_ = 0;
 };
 

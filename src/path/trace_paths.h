@@ -148,7 +148,8 @@ private:
 
 }  // namespace path_detail
 
-// Sink: void_path(lane, weight); free_path(lane, direction, pdf, distance or infinity, sky);
+// Sink: back(lane, distance, weight), where the first ray meets the back of a single-sided surface (weight: density
+// without a guide over that with it); free_path(lane, direction, pdf, distance or infinity, sky);
 // light(lane, layer, direction, radiance over density). kSunsKnown: PathStart::sunlit is filled in. kFromCell: the
 // start is a cell's, whose light is what a bounce sees of it, and paths that end at a cell are links: link(lane,
 // direction, pdf, cell, share of its irradiance). kMayBeGuided: there may be guides, and first_radiance, first_sampled
@@ -194,19 +195,19 @@ void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w
     }
     transport_.tracer.closest(std::span(w.rays).first(count), std::span(w.hits).first(count));
 
-    // Void paths end here.
+    // Backs of single-sided surfaces are black.
     std::size_t alive = 0;
     for (std::uint32_t lane = 0; lane < count; ++lane) {
         const Hit& hit = w.hits[lane];
         if (!hit.missed() && hit.back_face && !(geometry.triangles[hit.triangle].flags & kDoubleSided)) {
-            sink.void_path(lane, 1.0f / w.first_draw[lane].density);
+            sink.back(lane, hit.t, 1.0f / w.first_draw[lane].density);
         } else {
             w.hits[alive] = hit;
             w.lanes[alive++] = lane;
         }
     }
 
-    // Light that reaches the start from sampled directions, of void paths too.
+    // Light that reaches the start from sampled directions.
     {
         const bool suns_known = Sink::kSunsKnown && knows_point_suns_;
         LightQueue<Workspace> queue(transport_, w, guides.rate.share());

@@ -15,9 +15,15 @@ namespace {
 
 constexpr std::uint32_t kGridEdge = 8;  // one Hammersley point in each of 8 x 8 cells of the texel
 constexpr std::size_t kFewProbes = 16;  // of the points, spread evenly, that are asked before the rest
-constexpr float kLift = 0.05f;          // texels that short rays run above the surface: over its own bumps
-constexpr float kMostVoid = 0.03f;      // share of void rays from where a place lies behind a surface
-constexpr int kFewPoints = 16;          // that do not stand well for a component
+// How points are parted, at first and, where nothing is open then, again. `lift`: texels that short rays run above the
+// surface: over its own bumps, or closer to it, where they look over the edge of a solid that it slants into. A place
+// lies behind a surface where a larger share of its rays than `most_backs` meet near backs: the closer look may
+// leave points on the wrong side of such an edge.
+struct Parting {
+    float lift, most_backs;
+};
+constexpr Parting kPartings[] = {{0.05f, 0.03f}, {0.002f, 0.12f}};
+constexpr int kFewPoints = 16;  // that do not stand well for a component
 
 std::uint32_t cell_of(std::uint32_t s) {
     const Vec2 p = subtexel_point(s);
@@ -65,20 +71,14 @@ struct PointGrid {
     }
 };
 
-class Components {
-public:
-    explicit Components(std::size_t n) {
-        for (std::size_t i = 0; i < n; ++i) root_[i] = static_cast<std::uint8_t>(i);
-    }
-    void join(std::uint8_t a, std::uint8_t b) { root_[root(a)] = root(b); }
-    [[nodiscard]] std::uint8_t root(std::uint8_t i) const {
-        while (root_[i] != i) i = root_[i];
-        return i;
-    }
+Vec3 lifted(const SurfaceStart& start, const VisibleStarts::Points& points, float lift) {
+    return start.origin + start.normal * (lift * points.texel_size);
+}
 
-private:
-    std::array<std::uint8_t, kSamplesPerTexel> root_{};
-};
+// Their own triangles do not part the points: a chord of a curved surface runs below it.
+bool parts(const Hit& hit, const VisibleStarts::Points& points) {
+    return !hit.missed() && !std::ranges::binary_search(points.triangles, hit.triangle);
+}
 
 Ray segment(Vec3 from, Vec3 to) {
     Ray ray;
@@ -93,85 +93,122 @@ std::uint64_t first_bits(std::size_t n) { return n >= 64 ? ~std::uint64_t{0} : (
 
 }  // namespace
 
+class VisibleStarts::Components {
+public:
+    explicit Components(std::size_t n) {
+        for (std::size_t i = 0; i < n; ++i) root_[i] = static_cast<std::uint8_t>(i);
+    }
+    void join(std::uint8_t a, std::uint8_t b) { root_[root(a)] = root(b); }
+    [[nodiscard]] std::uint8_t root(std::uint8_t i) const {
+        while (root_[i] != i) i = root_[i];
+        return i;
+    }
+
+private:
+    std::array<std::uint8_t, kSamplesPerTexel> root_{};
+};
+
 VisibleStarts::VisibleStarts(const Tracer& tracer, const WorldGeometry& geometry, std::span<Ray> rays,
                              std::span<Hit> hits)
     : tracer_(tracer), geometry_(geometry), rays_(rays), hits_(hits) {
     LUMEL_CHECK(rays.size() >= 256 && hits.size() >= 256, rays.size(), hits.size());
 }
 
-// A ray from each start beyond the first few, over its hemisphere: bit i where that of start i is void within `reach`.
-std::uint64_t VisibleStarts::void_rays(std::span<const SurfaceStart> starts, std::size_t first, float reach,
-                                       std::uint32_t key) const {
+void VisibleStarts::look_around(std::span<const SurfaceStart> starts, std::size_t first, std::uint32_t key) const {
     for (std::size_t i = first; i < starts.size(); ++i) {
         const Sampler sampler(key, static_cast<std::uint32_t>(i));
         Ray& ray = rays_[i] = {};
         ray.origin = starts[i].origin;
         ray.direction = Frame(starts[i].normal).to_world(GatherHemisphere::sample(sampler.pair(0)));
-        ray.tmax = reach;
         ray.skip = starts[i].skip;
         ray.alpha_key = sampler.hash(1);
     }
     const std::size_t count = starts.size() - first;
     tracer_.closest(rays_.subspan(first, count), hits_.subspan(first, count));
-    std::uint64_t out = 0;
-    for (std::size_t i = first; i < starts.size(); ++i) {
-        const Hit& hit = hits_[i];
-        if (!hit.missed() && hit.back_face && (geometry_.triangles[hit.triangle].flags & kDoubleSided) == 0)
-            out |= std::uint64_t{1} << i;
+}
+
+bool VisibleStarts::is_near_back(const Hit& hit, const Points& points) const {
+    return !hit.missed() && hit.back_face && hit.t <= kEnclosureReach * points.texel_size &&
+           (geometry_.triangles[hit.triangle].flags & kDoubleSided) == 0;
+}
+
+bool VisibleStarts::rows_are_free(const Points& points, std::span<const SurfaceStart> starts, float lift) const {
+    std::size_t count = 0;
+    PointGrid(points.valid, starts.size()).for_each_line([&](std::uint8_t a, std::uint8_t b) {
+        rays_[count++] = segment(lifted(starts[a], points, lift), lifted(starts[b], points, lift));
+    });
+    tracer_.closest(rays_.first(count), hits_.first(count));
+    return std::ranges::none_of(hits_.first(count), [&](const Hit& hit) { return parts(hit, points); });
+}
+
+bool VisibleStarts::all_open(const Points& points, std::span<const SurfaceStart> starts, std::uint32_t key) const {
+    const std::size_t probes = std::min(starts.size(), kFewProbes);
+    look_around(starts.first(probes), 0, key);
+    const auto is_suspect = [&](const Hit& hit) {
+        if (hit.missed() || !hit.back_face) return false;
+        return (geometry_.triangles[hit.triangle].flags & kDoubleSided) != 0 || is_near_back(hit, points);
+    };
+    return std::ranges::none_of(hits_.first(probes), is_suspect) && rows_are_free(points, starts, kPartings[0].lift);
+}
+
+VisibleStarts::Components VisibleStarts::parted(const Points& points, std::span<const SurfaceStart> starts,
+                                                float lift) const {
+    Components components(starts.size());
+    if (rows_are_free(points, starts, lift)) {
+        for (std::size_t i = 1; i < starts.size(); ++i) components.join(static_cast<std::uint8_t>(i), 0);
+        return components;
     }
-    return out;
+    const PointGrid grid(points.valid, starts.size());
+    std::size_t count = 0;
+    grid.for_each_pair([&](std::uint8_t a, std::uint8_t b) {
+        rays_[count++] = segment(lifted(starts[a], points, lift), lifted(starts[b], points, lift));
+    });
+    tracer_.closest(rays_.first(count), hits_.first(count));
+    count = 0;
+    grid.for_each_pair([&](std::uint8_t a, std::uint8_t b) {
+        if (!parts(hits_[count++], points)) components.join(a, b);
+    });
+    return components;
 }
 
 VisibleStarts::Found VisibleStarts::find(const Points& points, std::span<const SurfaceStart> starts,
                                          std::uint32_t key) const {
     const std::size_t n = starts.size();
     LUMEL_CHECK(n <= kSamplesPerTexel, n);
-    const float reach = kEnclosureReach * points.texel_size;
-    std::uint64_t voids = void_rays(starts.first(std::min(n, kFewProbes)), 0, reach, key);
-    const bool probed_all = n <= kFewProbes || voids != 0;
-    if (voids != 0 && n > kFewProbes) voids |= void_rays(starts, kFewProbes, reach, key);
+    std::uint64_t backs = 0;
+    const auto probe = [&](std::size_t first, std::size_t last) {
+        look_around(starts.first(last), first, key);
+        for (std::size_t i = first; i < last; ++i)
+            if (is_near_back(hits_[i], points)) backs |= std::uint64_t{1} << i;
+    };
+    probe(0, std::min(n, kFewProbes));
+    const bool probed_all = n <= kFewProbes || backs != 0;
+    if (probed_all && n > kFewProbes) probe(kFewProbes, n);
     const std::uint64_t probed = first_bits(probed_all ? n : kFewProbes);
 
-    const float lift = kLift * points.texel_size;
-    const auto lifted = [&](std::uint8_t i) { return starts[i].origin + starts[i].normal * lift; };
-    const PointGrid grid(points.valid, n);
-    std::size_t count = 0;
-    const auto queue = [&](std::uint8_t a, std::uint8_t b) { rays_[count++] = segment(lifted(a), lifted(b)); };
-    grid.for_each_line(queue);
-    tracer_.closest(rays_.first(count), hits_.first(count));
-    // Their own triangles do not part the points: a chord of a curved surface runs below it.
-    const auto is_blocked = [&](const Hit& hit) {
-        return !hit.missed() && !std::ranges::binary_search(points.triangles, hit.triangle);
-    };
-    Components components(n);
-    if (std::ranges::any_of(hits_.first(count), is_blocked)) {
-        count = 0;
-        grid.for_each_pair(queue);
-        tracer_.closest(rays_.first(count), hits_.first(count));
-        count = 0;
-        grid.for_each_pair([&](std::uint8_t a, std::uint8_t b) {
-            if (!is_blocked(hits_[count++])) components.join(a, b);
-        });
-    } else {
-        for (std::size_t i = 1; i < n; ++i) components.join(static_cast<std::uint8_t>(i), 0);
+    for (const Parting& parting : kPartings) {
+        const Components components = parted(points, starts, parting.lift);
+        std::array<std::uint64_t, kSamplesPerTexel> members{};
+        for (std::size_t i = 0; i < n; ++i)
+            members[components.root(static_cast<std::uint8_t>(i))] |= std::uint64_t{1} << i;
+        Found found;
+        float most = 0.0f;
+        for (const std::uint64_t m : members) {
+            const int asked = std::popcount(m & probed);
+            const float share =
+                asked == 0 ? 0.0f : static_cast<float>(std::popcount(m & backs)) / static_cast<float>(asked);
+            const float weight = static_cast<float>(std::popcount(m & ~points.enclosed)) *
+                                 std::max(0.0f, 1.0f - share / parting.most_backs);
+            // A point whose own ray met a back is the likeliest to be hidden.
+            const std::uint64_t open = m & ~points.enclosed & ~backs;
+            if (weight > 0.0f) found.open |= open;
+            if (weight <= most) continue;
+            most = weight;
+            found.best = open;
+        }
+        if (found.best != 0) return found;
     }
-
-    std::array<std::uint64_t, kSamplesPerTexel> members{};
-    for (std::size_t i = 0; i < n; ++i) members[components.root(static_cast<std::uint8_t>(i))] |= std::uint64_t{1} << i;
-    Found found;
-    float most = 0.0f;
-    for (const std::uint64_t m : members) {
-        const int asked = std::popcount(m & probed);
-        const float share =
-            asked == 0 ? 0.0f : static_cast<float>(std::popcount(m & voids)) / static_cast<float>(asked);
-        const float weight =
-            static_cast<float>(std::popcount(m & ~points.enclosed)) * std::max(0.0f, 1.0f - share / kMostVoid);
-        if (weight > 0.0f) found.open |= m & ~points.enclosed;
-        if (weight <= most) continue;
-        most = weight;
-        found.best = m & ~points.enclosed;
-    }
-    return found;
+    return {};
 }
 
 std::optional<FootprintPart> part_to_refine(const FootprintPart& part, std::uint64_t valid,

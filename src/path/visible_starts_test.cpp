@@ -75,6 +75,20 @@ TEST(VisibleStarts, PointsBelowASolidAreNotOpen) {
     EXPECT_GT(std::popcount(found.best), 4);
 }
 
+// The floor slants into it: rays a twentieth of a texel above the floor look over its edge at points that lie inside.
+TEST(VisibleStarts, ASlopeThatTheFloorEntersPartsThePoints) {
+    test::SceneBuilder b;
+    const auto grey = b.material({0.5f, 0.5f, 0.5f});
+    add_floor(b, grey);
+    b.object("slope", grey, [](Mesh& m) {  // its top, 0.13 m from where it meets the floor
+        test::add_quad(m, {-1, 0.3f * 1.13f, 1}, {2, -0.6f, 0}, {0, 0, -2});
+    });
+    Context context(1);
+    const test::TracedScene traced(b.build(), context);
+    FloorTexel texel;
+    EXPECT_EQ(texel.find(traced).best, texel.points([](Vec3 p) { return p.x > 0.13f; }));
+}
+
 TEST(VisibleStarts, NothingIsOpenInsideASolid) {
     test::SceneBuilder b;
     const auto grey = b.material({0.5f, 0.5f, 0.5f});

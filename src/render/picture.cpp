@@ -53,30 +53,22 @@ public:
           baked_(baked),
           workspace_(integrator.make_workspace()) {}
 
-    // `light_scale`: what the light of further parts counts in this pixel.
-    Vec3 pixel(std::uint32_t x, std::uint32_t y, float& light_scale) {
+    Vec3 pixel(std::uint32_t x, std::uint32_t y) {
         const std::uint32_t key = pixel_key(x, y);
         Vec3 sum{}, lit{};
-        std::uint32_t lit_count = 0, surfaces = 0;
         for (std::uint32_t base = 0; base < options_.samples; base += kWavefrontLanes) {
             const std::uint32_t n = std::min<std::uint32_t>(kWavefrontLanes, options_.samples - base);
             see(x, y, key, base, n);
             std::uint32_t traced = 0;
             for (std::uint32_t i = 0; i < n; ++i) sum += shade(i, traced);
-            surfaces += surfaces_;
             lit += baked_light_;
-            lit_count += baked_count_;
-            path_trace(key, base, traced, lit, lit_count);
+            path_trace(key, base, traced, lit);
         }
-        // Void paths leave the mean: the surfaces seen are lit by the mean of those that could be lit.
-        light_scale = lit_count > 0 ? static_cast<float>(surfaces) / static_cast<float>(lit_count) : 0.0f;
-        light_scale *= 1.0f / static_cast<float>(options_.samples);
-        return sum * (1.0f / static_cast<float>(options_.samples)) + lit * light_scale;
+        return (sum + lit) * (1.0f / static_cast<float>(options_.samples));
     }
 
     // The baked light alone.
-    Vec3 further_light(std::uint32_t x, std::uint32_t y, float light_scale) {
-        if (light_scale == 0.0f) return {};
+    Vec3 further_light(std::uint32_t x, std::uint32_t y) {
         const std::uint32_t key = pixel_key(x, y);
         Vec3 lit{};
         for (std::uint32_t base = 0; base < options_.samples; base += kWavefrontLanes) {
@@ -86,7 +78,7 @@ public:
             for (std::uint32_t i = 0; i < n; ++i) shade(i, others);
             lit += baked_light_;
         }
-        return lit * light_scale;
+        return lit * (1.0f / static_cast<float>(options_.samples));
     }
 
 private:
@@ -109,7 +101,6 @@ private:
                 rays_[i].skip = hits_[i].triangle;
                 transport_.tracer.closest(std::span(rays_).subspan(i, 1), std::span(hits_).subspan(i, 1));
             }
-        surfaces_ = baked_count_ = 0;
         baked_light_ = {};
     }
 
@@ -123,12 +114,10 @@ private:
         if (hit.missed())
             return transport_.lights.has_sky() ? transport_.lights.sky(rays_[i].direction).radiance : Vec3{};
         if (culled(hit)) return {};
-        ++surfaces_;
         const Vec3 albedo = transport_.surfaces.albedo(hit.triangle, hit.b1, hit.b2);
         const Vec3 emission = transport_.surfaces.emission(hit.triangle, hit.b1, hit.b2);
         if (baked_ && !hit.back_face)
             if (const std::optional<Vec3> irradiance = baked_->irradiance(hit.triangle, hit.b1, hit.b2)) {
-                ++baked_count_;
                 baked_light_ += albedo * *irradiance;
                 return emission;
             }
@@ -140,17 +129,13 @@ private:
         return emission;
     }
 
-    void path_trace(std::uint32_t key, std::uint32_t base, std::uint32_t n, Vec3& lit, std::uint32_t& lit_count) {
+    void path_trace(std::uint32_t key, std::uint32_t base, std::uint32_t n, Vec3& lit) {
         if (n == 0) return;
         integrator_.surface_starts(std::span(points_).first(n), std::span(sides_).first(n), *workspace_, surface_);
         for (std::uint32_t k = 0; k < n; ++k)
             starts_[k] = {surface_[k].origin, surface_[k].normal, key, base + lane_[k], surface_[k].skip};
-        integrator_.gather_irradiance(std::span(starts_).first(n), *workspace_, std::span(irradiance_).first(n),
-                                      std::span(valid_).first(n));
-        for (std::uint32_t k = 0; k < n; ++k) {
-            lit += albedo_[k] * irradiance_[k];
-            lit_count += valid_[k];
-        }
+        integrator_.gather_irradiance(std::span(starts_).first(n), *workspace_, std::span(irradiance_).first(n));
+        for (std::uint32_t k = 0; k < n; ++k) lit += albedo_[k] * irradiance_[k];
     }
 
     const Transport& transport_;
@@ -164,12 +149,11 @@ private:
     std::array<Ray, kWavefrontLanes> rays_;
     std::array<Hit, kWavefrontLanes> hits_;
     std::array<SamplePoint, kWavefrontLanes> points_;
-    std::array<std::uint8_t, kWavefrontLanes> sides_{}, valid_{};
+    std::array<std::uint8_t, kWavefrontLanes> sides_{};
     std::array<std::uint32_t, kWavefrontLanes> lane_{};
     std::array<Vec3, kWavefrontLanes> albedo_, irradiance_;
     std::array<SurfaceStart, kWavefrontLanes> surface_;
     std::array<PathStart, kWavefrontLanes> starts_;
-    std::uint32_t surfaces_ = 0, baked_count_ = 0;
     Vec3 baked_light_{};
 };
 
@@ -193,7 +177,6 @@ Result<Image> render_picture(const Transport& transport, const PathOptions& path
     for (auto& tracer : tracers)
         tracer = std::make_unique<PixelTracer>(transport, integrator, path, lens, options, baked);
     const std::uint32_t parts = baked ? baked->parts : 1;
-    std::vector<float> light_scale(parts > 1 ? image.data.size() / 3 : 0);
     ProgressParts progress(context, "render", parts);
     for (std::uint32_t part = 0; part < parts; ++part) {
         progress.begin(1.0);
@@ -206,9 +189,7 @@ Result<Image> render_picture(const Transport& transport, const PathOptions& path
                     const auto x = static_cast<std::uint32_t>(i % options.width);
                     const auto y = static_cast<std::uint32_t>(i / options.width);
                     PixelTracer& tracer = *tracers[range.worker];
-                    float scale = part > 0 ? light_scale[i] : 0.0f;
-                    const Vec3 color = part > 0 ? tracer.further_light(x, y, scale) : tracer.pixel(x, y, scale);
-                    if (part == 0 && parts > 1) light_scale[i] = scale;
+                    const Vec3 color = part > 0 ? tracer.further_light(x, y) : tracer.pixel(x, y);
                     for (std::size_t c = 0; c < 3; ++c) image.at(x, y)[c] += color[c];
                 }
             },

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "baked_page.h"
+#include "math/constants.h"
 
 namespace lumel {
 namespace {
@@ -48,9 +49,9 @@ TEST(Hemisphere, NoLightEntersAClosedSmoothHollow) {
     for (const test::BakedTexel& texel : texels) ASSERT_EQ(texel.irradiance, Vec3{}) << texel.x << " " << texel.y;
 }
 
-// Half of what this floor could see is the back of a wall: void paths. The same even sky, once met by rays alone and
+// Half of what this floor could see is the back of a wall, black. The same even sky, once met by rays alone and
 // once as a map, sampled by both ways, must light it alike.
-TEST(Hemisphere, BothWaysToSampleTheSkyHaveOneNormaliser) {
+TEST(Hemisphere, BothWaysToSampleTheSkyAgreeBesideABack) {
     const auto mean = [](bool as_map) {
         test::SceneBuilder builder;
         const std::uint32_t grey = builder.material({0.5f, 0.5f, 0.5f});
@@ -58,7 +59,7 @@ TEST(Hemisphere, BothWaysToSampleTheSkyHaveOneNormaliser) {
         builder.object(
             "wall", grey,
             [](Mesh& mesh) {
-                test::add_quad(mesh, {0, 0, 20}, {0, 0, -40}, {0, 20, 0});
+                test::add_quad(mesh, {0, 0, 200}, {0, 0, -400}, {0, 20, 0});
             },
             {}, NodeClass::occluder);
         Scene scene = builder.build();
@@ -76,9 +77,37 @@ TEST(Hemisphere, BothWaysToSampleTheSkyHaveOneNormaliser) {
         return sum / static_cast<double>(texels.size());
     };
     const double by_rays = mean(false), by_both = mean(true);
-    EXPECT_GT(by_rays, 0.9);
+    // At distance d from a long wall of height h a floor sees (1 + d / sqrt(d^2 + h^2)) / 2 of the sky, on average over
+    // the 2 m 1/2 + (sqrt(404) - 20) / 4. The wall ends 200 m to either side, which is 1e-3 of it, and the texels at
+    // its foot may be invalid and take the light of the next.
+    EXPECT_NEAR(by_rays, 0.5 + (std::sqrt(404.0) - 20.0) / 4.0, 3e-3);
     // Some 500 texels of 1024 samples, each within a few percent: the means are good to some 1e-4.
     EXPECT_NEAR(by_both / by_rays, 1.0, 2e-3);
+}
+
+// A sun that stands on this side of the wall lights the floor before its back as if the wall were not there.
+TEST(Hemisphere, TheBackOfAWallDoesNotBrightenTheSun) {
+    test::SceneBuilder builder;
+    const std::uint32_t grey = builder.material({0.5f, 0.5f, 0.5f});
+    builder.object("floor", grey, [](Mesh& mesh) { test::add_quad(mesh, {-2, 0, 1}, {2, 0, 0}, {0, 0, -2}); });
+    builder.object(
+        "wall", grey,
+        [](Mesh& mesh) {
+            test::add_quad(mesh, {0, 0, 3}, {0, 0, -6}, {0, 2, 0});
+        },
+        {}, NodeClass::occluder);
+    Light& sun = builder.light(LightShape::sun);
+    sun.direction = normalize(Vec3{1, -1, 0});
+    sun.intensity = {3, 3, 3};
+    BakeOptions options;
+    options.texels_per_metre = 4;
+    options.samples = 64;
+    options.bounces = 0;
+    const Scene scene = builder.build();
+    const auto texels = test::bake_texels(scene, options);
+    ASSERT_GT(texels.size(), 60u);
+    const float expected = 3.0f * std::sqrt(0.5f) * kInvPi;
+    for (const test::BakedTexel& texel : texels) ASSERT_NEAR(texel.irradiance.x, expected, 1e-5f * expected);
 }
 
 // Twice the direct light has twice its standard error; light that the files leave out has no part in it.
