@@ -272,6 +272,9 @@ stop TERM trace bake ok.gltf -o out --resolution 1024x1024 --texels-per-metre 10
 stop INT write bake ok.gltf -o out --resolution 8192x8192 --texels-per-metre 10 --samples 1
 stop INT render render ok.gltf -o picture.exr --resolution 512x512 --samples 100000
 [ -e picture.exr ] && complain 'a stopped render left a picture'
+# The pictures of a large page take seconds, too.
+stop INT unwrap atlas ok.gltf -o layout --resolution 4096x4096
+[ -e layout ] && complain 'a stopped atlas left its folder'
 
 # A disk that is full, wherever in the output that is: files may grow to so many blocks of 1024 bytes, and what a bake
 # writes is larger.
