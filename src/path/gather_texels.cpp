@@ -37,6 +37,10 @@ constexpr FootprintToTry kFootprints[] = {{Footprint::whole, {}},
                                           {Footprint::lookup, {{1 - kStrip, 0}, {1, 1}}},
                                           {Footprint::lookup, {{0, 0}, {1, kStrip}}},
                                           {Footprint::lookup, {{0, 1 - kStrip}, {1, 1}}}};
+// Of a texel: with fewer, its noise hides what lookups beside a hidden texel show, and looking for it would take most
+// of the time.
+constexpr std::uint32_t kFewestSamplesForLookups = 16;
+constexpr std::size_t kSomePoints = 16;  // of a texel, spread evenly
 constexpr std::uint32_t kFewestSamplesForGuide = 64;
 // Of a texel; its block has seen enough of its lights by then. Each new table begins a new sequence of choices, and a
 // choice is the more even the longer its sequence.
@@ -90,12 +94,19 @@ std::size_t PathIntegrator::choose_starts(const GatherSite& site, std::uint32_t 
                                           std::span<SurfaceStart> starts) const {
     const VisibleStarts finder(transport_.tracer, transport_.geometry, w.rays, w.hits);
     const auto find = [&](std::size_t n, std::uint64_t valid, std::span<const std::uint32_t> triangles) {
-        const auto all = starts.first(n);
-        const std::uint64_t enclosed = any_double_sided_
-                                           ? enclosed_points(all, kEnclosureReach * site.texel_size, mix32(key),
-                                                             transport_.tracer, transport_.geometry, w.rays, w.hits)
-                                           : 0;
-        return finder.find({valid, triangles, site.texel_size, enclosed}, all, mix32(key + 1));
+        const auto enclosed_of_first = [&](std::size_t count) {
+            return enclosed_points(starts.first(count), kEnclosureReach * site.texel_size, mix32(key),
+                                   transport_.tracer, transport_.geometry, w.rays, w.hits);
+        };
+        std::uint64_t enclosed = 0;
+        if (any_double_sided_) {
+            // Where all of some are shut in, so little is seen that other footprints say more of it.
+            const std::size_t some = std::min(n, kSomePoints);
+            enclosed = enclosed_of_first(some);
+            if (static_cast<std::size_t>(std::popcount(enclosed)) == some) return VisibleStarts::Found{};
+            if (n > some) enclosed = enclosed_of_first(n);
+        }
+        return finder.find({valid, triangles, site.texel_size, enclosed}, starts.first(n), mix32(key + 1));
     };
     const std::size_t n = site.points.size();
     std::fill(w.sides.begin(), w.sides.end(), std::uint8_t{0});
@@ -103,7 +114,8 @@ std::size_t PathIntegrator::choose_starts(const GatherSite& site, std::uint32_t 
     const VisibleStarts::Points usual{site.valid, site.triangles, site.texel_size};
     if (!site.footprints || finder.all_open(usual, starts.first(n), mix32(key + 1))) return n;
 
-    for (const FootprintToTry& place : kFootprints) {
+    const std::size_t places = options_.samples < kFewestSamplesForLookups ? 1 : std::size(kFootprints);
+    for (const FootprintToTry& place : std::span(kFootprints).first(places)) {
         const auto read_part = [&](const FootprintPart& part) {
             site.footprints->read(site.texel, place.footprint, part, w.points);
             const auto points = std::span<const SamplePoint>(w.points.at).first(w.points.count);

@@ -185,6 +185,7 @@ VisibleStarts::Found VisibleStarts::find(const Points& points, std::span<const S
     const bool probed_all = n <= kFewProbes || backs != 0;
     if (probed_all && n > kFewProbes) probe(kFewProbes, n);
     const std::uint64_t probed = first_bits(probed_all ? n : kFewProbes);
+    if ((first_bits(n) & ~(backs | points.enclosed)) == 0) return {};
 
     for (const Parting& parting : kPartings) {
         const Components components = parted(points, starts, parting.lift);
