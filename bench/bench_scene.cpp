@@ -26,8 +26,12 @@ bool emits(const Scene& scene) {
            std::ranges::any_of(scene.materials, [](const Material& m) { return max_component(m.emission) > 0.0f; });
 }
 
-BakeOptions light_of_the_benchmarks() {
+BakeOptions light_of_the_benchmarks(const std::string& sky_map) {
     BakeOptions light;
+    if (!sky_map.empty()) {
+        light.sky.file = sky_map;
+        return light;
+    }
     light.sky.color = Vec3{0.7f, 0.9f, 1.3f};
     light.sun.direction = Vec3{0.4188f, -0.7614f, -0.4949f};
     light.sun.color = {14.0f, 12.5f, 10.0f};
@@ -37,7 +41,7 @@ BakeOptions light_of_the_benchmarks() {
 
 }  // namespace
 
-Scene load_lit(const std::string& path, Context& context) {
+Scene load_lit(const std::string& path, Context& context, const std::string& sky_map) {
     LoadedScene loaded = need(load_scene(path, context));
     Scene& scene = loaded.scene;
     const std::string stem = std::filesystem::path(path).stem().string();
@@ -46,13 +50,14 @@ Scene load_lit(const std::string& path, Context& context) {
         scene.sky = {};
         scene.sky.color = known->radiance;
     } else if (!emits(scene)) {
-        need(apply_lighting(scene, light_of_the_benchmarks()));
+        need(apply_lighting(scene, light_of_the_benchmarks(sky_map)));
     }
     return std::move(scene);
 }
 
-BenchScene::BenchScene(const std::string& path, const ChartOptions& options, Context& context)
-    : BenchScene(base_name(path), load_lit(path, context), options, context) {}
+BenchScene::BenchScene(const std::string& path, const ChartOptions& options, Context& context,
+                       const std::string& sky_map)
+    : BenchScene(base_name(path), load_lit(path, context, sky_map), options, context) {}
 
 BenchScene::BenchScene(std::string scene_name, Scene made, const ChartOptions& options, Context& context)
     : name(std::move(scene_name)),

@@ -19,13 +19,13 @@ struct TexelRange {
     std::size_t first = 0, count = 0;
 };
 
-// Scenes without a light of their own get the benchmarks' sky and sun; those whose sky glTF cannot say get theirs.
-// Throws, with a message for the user.
-Scene load_lit(const std::string& path, Context& context);
+// Scenes without a light of their own get the sky map, if one is given, else the benchmarks' sky and sun; those whose
+// sky glTF cannot say get theirs. Throws, with a message for the user.
+Scene load_lit(const std::string& path, Context& context, const std::string& sky_map = {});
 
 struct BenchScene {
     // Lit by load_lit().
-    BenchScene(const std::string& path, const ChartOptions& options, Context& context);
+    BenchScene(const std::string& path, const ChartOptions& options, Context& context, const std::string& sky_map = {});
     // Made in code, lit as it is.
     BenchScene(std::string scene_name, Scene made, const ChartOptions& options, Context& context);
     BenchScene(const BenchScene&) = delete;  // its members point at each other

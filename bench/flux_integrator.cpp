@@ -108,21 +108,16 @@ void FluxIntegrator::start_paths(std::size_t count, Workspace& w) const {
     transport_.tracer.closest(std::span(w.rays).first(count), std::span(w.hits).first(count));
 }
 
-// "Ignore contribution from back face rays."
-std::size_t FluxIntegrator::drop_paths_to_backs(std::size_t count, Workspace& w, TexelSink& sink) const {
-    std::size_t alive = 0;
+// "Ignore contribution from back face rays": they end where they stand_on() nothing.
+void FluxIntegrator::tell_first_hits(std::size_t count, Workspace& w, TexelSink& sink) const {
     for (std::uint32_t lane = 0; lane < count; ++lane) {
-        const Hit hit = w.hits[lane];
-        if (!hit.missed() && hit.back_face && !(transport_.geometry.triangles[hit.triangle].flags & kDoubleSided)) {
-            sink.back(lane, hit.t, 1.0f);
-            continue;
-        }
+        const Hit& hit = w.hits[lane];
+        w.lanes[lane] = lane;
+        if (!hit.missed() && hit.back_face && !(transport_.geometry.triangles[hit.triangle].flags & kDoubleSided))
+            sink.back(lane, 1.0f);
         sink.free_path(lane, w.paths[lane].direction, w.paths[lane].pdf, hit.missed() ? kInfiniteDistance : hit.t,
                        hit.missed());
-        w.hits[alive] = hit;
-        w.lanes[alive++] = lane;
     }
-    return alive;
 }
 
 void FluxIntegrator::push(std::uint32_t lane, std::uint32_t vertex, Layer layer, const LightSample& sample,
@@ -260,7 +255,8 @@ bool FluxIntegrator::go_on(std::uint32_t lane, std::uint32_t vertex, Workspace& 
 
 void FluxIntegrator::trace_paths(std::size_t count, Workspace& w, TexelSink& sink) const {
     start_paths(count, w);
-    std::size_t alive = drop_paths_to_backs(count, w, sink);
+    tell_first_hits(count, w, sink);
+    std::size_t alive = count;
     for (std::uint32_t lane = 0; lane < count; ++lane) sample_lights(lane, 0, w);
     resolve_lights(0, w, sink);
 

@@ -63,7 +63,7 @@ public:
 private:
     void trace_paths(std::size_t count, Workspace& w, TexelSink& sink) const;
     void start_paths(std::size_t count, Workspace& w) const;
-    std::size_t drop_paths_to_backs(std::size_t count, Workspace& w, TexelSink& sink) const;
+    void tell_first_hits(std::size_t count, Workspace& w, TexelSink& sink) const;
     void sample_lights(std::uint32_t lane, std::uint32_t vertex, Workspace& w) const;
     void push(std::uint32_t lane, std::uint32_t vertex, Layer layer, const LightSample& sample, float weight,
               Workspace& w) const;

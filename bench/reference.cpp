@@ -19,14 +19,14 @@ namespace {
 
 constexpr std::uint32_t kPassSamples = 256;
 constexpr std::uint64_t kMagic =
-    0x32304645526c6d4cull;  // "LmlREF02": raise it when brute force changes what it computes
+    0x33304645526c6d4cull;  // "LmlREF03": raise it when brute force changes what it computes
 
-// Sums of TexelLight over valid samples, as doubles: I and SH of three channels.
+// Sums of TexelLight over all samples, as doubles: I and SH of three channels.
 constexpr std::size_t kNumbers = 3 * (1 + kScoredSh);
 
 struct TexelSums {
     std::array<double, kNumbers> sums{};
-    std::uint64_t count = 0, traced = 0;
+    std::uint64_t open = 0, traced = 0;  // samples that met no back first, all
 };
 
 struct Header {
@@ -50,9 +50,9 @@ std::array<double, kNumbers> numbers_of(const TexelLight& light) {
 
 TexelLight mean_of(const TexelSums& texel) {
     TexelLight out;
-    if (texel.count == 0) return out;
+    if (texel.traced == 0) return out;
     const auto mean = [&](std::size_t i) {
-        return static_cast<float>(texel.sums[i] / static_cast<double>(texel.count));
+        return static_cast<float>(texel.sums[i] / static_cast<double>(texel.traced));
     };
     for (std::size_t c = 0; c < 3; ++c) {
         out.irradiance[c] = mean(c);
@@ -106,10 +106,10 @@ void add_pass(Half& half, const BenchScene& bench, TexelRange range, const Light
         const std::size_t texel = range.first + i;
         const auto numbers = numbers_of(light_of(sums, texel));
         TexelSums& into = half.texels[i];
-        const std::uint32_t count = sums.count[texel];
-        for (std::size_t k = 0; k < kNumbers; ++k) into.sums[k] += numbers[k] * static_cast<double>(count);
-        into.count += count;
-        into.traced += sums.traced[texel];
+        const std::uint32_t traced = sums.count[texel];
+        for (std::size_t k = 0; k < kNumbers; ++k) into.sums[k] += numbers[k] * static_cast<double>(traced);
+        into.open += sums.open[texel];
+        into.traced += traced;
     }
     ++half.header.passes;
 }
@@ -157,7 +157,7 @@ ReferenceHalf reference_half(const BenchScene& bench, TexelRange range, std::uin
     out.samples = half.header.passes * kPassSamples;
     for (const TexelSums& texel : half.texels) {
         out.light.push_back(mean_of(texel));
-        out.valid.push_back(texel.traced > 0 && 2 * texel.count > texel.traced ? 1 : 0);
+        out.valid.push_back(texel.traced > 0 && 2 * texel.open >= texel.traced ? 1 : 0);
     }
     return out;
 }

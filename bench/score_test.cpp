@@ -37,7 +37,7 @@ struct RandomPage {
             sums.layers[i][0].irradiance = truth * 0.25f;
             sums.layers[i][2].irradiance = truth * 0.75f + draw(error);
             sums.layers[i][1].sh[0] = truth;
-            sums.count[i] = sums.traced[i] = 1;
+            sums.open[i] = sums.count[i] = 1;
         }
     }
     static constexpr std::size_t kTexels = 32 * 32;
@@ -101,7 +101,7 @@ TEST(Score, LeavesOutTheWorstTexelsWhereItSays) {
     const Score after = page.scored();
     EXPECT_GT(after.relmse, 100.0 * before.relmse);
     EXPECT_NEAR(after.relmse_without_worst, before.relmse_without_worst, 0.02 * before.relmse);
-    page.sums.count[5] = 0;  // invalid
+    page.sums.open[5] = 0;  // invalid
     EXPECT_EQ(page.scored().texels, RandomPage::kTexels - 1);
     EXPECT_LT(page.scored().relmse, 2.0 * before.relmse);
 }
@@ -143,7 +143,7 @@ public:
             const float truth = 1.0f + static_cast<float>(i) / kTexels;
             sums_.layers[i][1].irradiance = erring(truth, noise);
             sums_.variance[i] = Vec3{1, 1, 1} * (stated(row) * truth * truth * noise * noise);
-            sums_.count[i] = sums_.traced[i] = 1;
+            sums_.open[i] = sums_.count[i] = 1;
             for (ReferenceHalf* half : {&a_, &b_}) {
                 half->light.push_back({erring(truth, reference_noise), {}});
                 half->valid.push_back(1);

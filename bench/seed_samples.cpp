@@ -71,7 +71,7 @@ RadianceSums gather_seed_samples(const BenchScene& bench, std::uint32_t samples,
         }
         sums.layers[range.begin][static_cast<std::size_t>(Layer::direct)].irradiance =
             sum * (1.0f / static_cast<float>(samples));
-        sums.count[range.begin] = sums.traced[range.begin] = samples;
+        sums.open[range.begin] = sums.count[range.begin] = samples;
     });
     return sums;
 }

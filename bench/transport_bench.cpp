@@ -27,7 +27,7 @@ struct Options {
     std::size_t texels = 0;
     double texel_budget = 20000.0;
     ReferenceOptions reference{default_reference_folder()};
-    std::string reference_folder, csv, plot, stop = "fixed";
+    std::string sky_map, reference_folder, csv, plot, stop = "fixed";
     double error = 0.05, confidence = 0.95;
     std::uint32_t seed = 1, runs = 1;
     unsigned threads = 0;
@@ -71,7 +71,7 @@ std::unique_ptr<BenchScene> load(const Options& options, const std::string& path
         charts.resolution_width = options.resolution.at(0);
         charts.resolution_height = options.resolution.at(1);
     }
-    return std::make_unique<BenchScene>(path, charts, context);
+    return std::make_unique<BenchScene>(path, charts, context, options.sky_map);
 }
 
 std::vector<const Method*> chosen_methods(const Options& options) {
@@ -125,7 +125,7 @@ Row measure(const Method& method, GatherJob job, std::uint32_t runs, const Refer
         const RadianceSums sums = method.gather(job);
         row.cpu_seconds += stopwatch.seconds() / runs;
         row.rays += job.bench.tracer->statistics().rays - rays_before;
-        for (const std::uint32_t t : sums.traced) traced += t;
+        for (const std::uint32_t n : sums.count) traced += n;
         add(row.score, score(sums, a, b, job.bench.texels, job.range), 1.0 / runs);
     }
     row.rays /= runs;
@@ -226,6 +226,8 @@ void add_transport(CLI::App& app) {
         ->delimiter('x')
         ->expected(2)
         ->check(CLI::Range(16u, 4096u));
+    command->add_option("--sky", o->sky_map, "Map over scenes without a light of their own: .hdr or .exr")
+        ->check(CLI::ExistingFile);
     command->add_option("--texel-budget", o->texel_budget, "Texels of other scenes")->check(CLI::Range(100.0, 1e7));
     command->add_option("--texels", o->texels, "At most so many, from the middle of page 0; 0: all of it");
     command->add_option("--seed", o->seed, "Of the methods");

@@ -198,7 +198,7 @@ struct PageBaker {
             }
             report.trace_wall_seconds += timer.seconds();
         }
-        for (const std::uint32_t traced : sums.traced) report.samples += traced;
+        for (const std::uint32_t count : sums.count) report.samples += count;
         LUMEL_TRY_STATUS(pool_variance(texels, sums, context));
         const bool smooth = options.denoise.value_or(preset_values(options.preset).denoise);
         if (smooth) {

@@ -35,8 +35,8 @@ void hash_sums(Hasher& hasher, const RadianceSums& sums) {
     hasher.array(std::span(std::as_const(sums.bent_normal)));
     hasher.array(std::span(std::as_const(sums.sky_visibility)));
     hasher.array(std::span(std::as_const(sums.ambient_occlusion)));
+    hasher.array(std::span(std::as_const(sums.open)));
     hasher.array(std::span(std::as_const(sums.count)));
-    hasher.array(std::span(std::as_const(sums.traced)));
 }
 
 std::string bake_hash(unsigned threads, const BakeOptions& options, BakeReport* report = nullptr) {
@@ -159,8 +159,8 @@ TEST(Bake, AnySplitOfTheTexelsGivesTheSameBits) {
                 merged.bent_normal[i] = part.bent_normal[i];
                 merged.sky_visibility[i] = part.sky_visibility[i];
                 merged.ambient_occlusion[i] = part.ambient_occlusion[i];
+                merged.open[i] = part.open[i];
                 merged.count[i] = part.count[i];
-                merged.traced[i] = part.traced[i];
             }
         }
         EXPECT_EQ(hash_of(whole), hash_of(merged)) << shards << " shards";

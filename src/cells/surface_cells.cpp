@@ -276,8 +276,8 @@ Status SurfaceCells::solve(std::span<const CellGather> gathers, std::span<const 
     // Cells that are not usable keep their light: links of others end there.
     std::vector<Vec3> direct(size());
     for (std::size_t i = 0; i < size(); ++i) {
-        const bool sound = gathers[i].count > 0 && is_finite(gathers[i].direct);
-        if (!sound || 2 * gathers[i].open <= gathers[i].traced) usable_[i] = 0;
+        const bool sound = gathers[i].traced > 0 && is_finite(gathers[i].direct);
+        if (!sound || 2 * gathers[i].open < gathers[i].traced) usable_[i] = 0;
         if (sound) direct[i] = gathers[i].direct;
     }
     irradiance_ = direct;
@@ -292,7 +292,7 @@ Status SurfaceCells::solve(std::span<const CellGather> gathers, std::span<const 
                     const Vec3 from = irradiance_[link.from];
                     for (std::size_t c = 0; c < 3; ++c) sum[c] += static_cast<float>(link.weight[c]) * from[c];
                 }
-                const float paths = static_cast<float>(std::max(1u, gathers[i].count));
+                const float paths = static_cast<float>(std::max(1u, gathers[i].traced));
                 next[i] = direct[i] + sum * (1.0f / (CellLink::kOne * paths));
                 // Cell by cell: a dim room beside a bright yard has its own pace.
                 settled[i] = max_component(next[i] - irradiance_[i]) <= kSettled * max_component(next[i]) ? 1 : 0;

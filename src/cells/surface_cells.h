@@ -32,9 +32,8 @@ struct CellLink {
 
 // What a cell gathered by paths of its own, apart from its links: light that reached it without another cell.
 struct CellGather {
-    Vec3 direct{};            // mean over the paths that count
-    std::uint32_t count = 0;  // paths that count: all but those of points that something hides
-    std::uint32_t open = 0;   // paths that meet no back of a single-sided surface first
+    Vec3 direct{};           // mean over the paths traced
+    std::uint32_t open = 0;  // paths that meet no back of a single-sided surface first
     std::uint32_t traced = 0;
 };
 

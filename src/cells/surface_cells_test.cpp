@@ -145,7 +145,7 @@ TEST(SurfaceCells, WhereAWallStandsThereIsNoCell) {
 TEST(SurfaceCells, BouncesAreIterationsOverTheLinks) {
     Floor floor(floor_builder());
     const std::size_t n = floor.cells.size();
-    std::vector<CellGather> gathers(n, CellGather{{1, 2, 0}, 2, 2, 2});
+    std::vector<CellGather> gathers(n, CellGather{{1, 2, 0}, 2, 2});
     std::vector<CellLink> links(n);
     // One path of the two ends at the other cell, with half of its light: a quarter of it in the mean.
     for (std::size_t i = 0; i < n; ++i) links[i] = {static_cast<std::uint32_t>(i ^ 1u) % 81u, {16384, 16384, 16384}};
@@ -160,7 +160,7 @@ TEST(SurfaceCells, BouncesAreIterationsOverTheLinks) {
 TEST(SurfaceCells, DimCellsBounceToTheirEndBesideBrightOnes) {
     Floor floor(floor_builder());
     const std::size_t n = floor.cells.size();
-    std::vector<CellGather> gathers(n, CellGather{{1e6f, 1e6f, 1e6f}, 1, 1, 1});
+    std::vector<CellGather> gathers(n, CellGather{{1e6f, 1e6f, 1e6f}, 1, 1});
     std::vector<CellLink> links(n);
     gathers[0].direct = gathers[1].direct = {1, 1, 1};
     const auto weight = static_cast<std::uint16_t>(0.8f * CellLink::kOne);
@@ -173,9 +173,9 @@ TEST(SurfaceCells, DimCellsBounceToTheirEndBesideBrightOnes) {
 TEST(SurfaceCells, ACellAmongBacksStillPassesItsLightOn) {
     Floor floor(floor_builder());
     const std::size_t n = floor.cells.size();
-    std::vector<CellGather> gathers(n, CellGather{{}, 4, 4, 4});
+    std::vector<CellGather> gathers(n, CellGather{{}, 4, 4});
     std::vector<CellLink> links(n);
-    gathers[1] = {{1, 1, 1}, 1, 1, 4};
+    gathers[1] = {{1, 1, 1}, 1, 4};
     links[0] = {1, {32768, 32768, 32768}};
     ASSERT_TRUE(floor.cells.solve(gathers, links, 8, floor.context).ok());
     EXPECT_FALSE(floor.cells.usable(1));
@@ -185,7 +185,7 @@ TEST(SurfaceCells, ACellAmongBacksStillPassesItsLightOn) {
 TEST(SurfaceCells, LightThatIsNoNumberStaysOut) {
     Floor floor(floor_builder());
     const std::size_t n = floor.cells.size();
-    std::vector<CellGather> gathers(n, CellGather{{1, 1, 1}, 1, 1, 1});
+    std::vector<CellGather> gathers(n, CellGather{{1, 1, 1}, 1, 1});
     std::vector<CellLink> links(n, CellLink{3, {16384, 16384, 16384}});
     gathers[3].direct.x = std::numeric_limits<float>::infinity();
     ASSERT_TRUE(floor.cells.solve(gathers, links, 4, floor.context).ok());
@@ -210,9 +210,9 @@ TEST(SurfaceCells, WhereASlabLiesThereIsNoCell) {
 
 TEST(SurfaceCells, ACellAmongBacksOfSurfacesIsNone) {
     Floor floor(floor_builder());
-    std::vector<CellGather> gathers(floor.cells.size(), CellGather{{1, 1, 1}, 10, 10, 10});
+    std::vector<CellGather> gathers(floor.cells.size(), CellGather{{1, 1, 1}, 10, 10});
     const std::uint32_t cell = floor.at(1, 1);
-    gathers[cell].open = 5;
+    gathers[cell].open = 4;
     ASSERT_TRUE(floor.cells.solve(gathers, {}, 2, floor.context).ok());
     EXPECT_EQ(floor.at(1, 1), kNone);
     EXPECT_NE(floor.at(2, 2), kNone);

@@ -17,7 +17,7 @@ namespace lumel {
 // A page made small: means over the covered texels of each block.
 struct PagePreview {
     Image irradiance;  // I, 3 channels
-    Image samples;     // valid samples per texel, 1 channel
+    Image samples;     // samples per texel, 1 channel
     std::vector<std::uint8_t> covered;
 };
 

@@ -89,7 +89,7 @@ TEST(AdaptiveSamples, RareLightIsNotLost) {
         for (std::size_t i = 0; i < sums.size(); ++i) {
             out.mean += static_cast<double>(test::total_irradiance(sums, i).y);
             out.variance += static_cast<double>(sums.variance[i].y);
-            out.samples += sums.traced[i];
+            out.samples += sums.count[i];
         }
         out.samples /= static_cast<double>(sums.size());
         return out;

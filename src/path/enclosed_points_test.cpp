@@ -39,7 +39,7 @@ TEST(EnclosedPoints, AreThoseUnderWhatStandsOnTheFloor) {
     Context context(1);
     const test::TracedScene both_sides(box_on_floor(true), context);
     EXPECT_EQ(enclosed_along(both_sides, 0.6f), 0x00ffu);
-    // Back faces of single-sided surfaces void the paths: a rule of its own.
+    // Backs of single-sided surfaces tell by themselves: a rule of its own.
     const test::TracedScene single(box_on_floor(false), context);
     EXPECT_EQ(enclosed_along(single, 0.6f), 0u);
 }
@@ -82,7 +82,7 @@ TEST(EnclosedPoints, FarBackFacesDoNotEnclose) {
 }
 
 // Texels of 0.4 m, half of one under the box: the part that is seen has the light of the open floor, as it has where
-// the box is single-sided and its back faces void the paths.
+// the box is single-sided and its backs are black.
 TEST(EnclosedPoints, LeaveTheLightOfATexelToItsOpenPart) {
     std::array<std::vector<float>, 2> irradiance;
     for (const bool double_sided : {false, true}) {
@@ -106,7 +106,7 @@ TEST(EnclosedPoints, LeaveTheLightOfATexelToItsOpenPart) {
     ASSERT_EQ(irradiance[0].size(), irradiance[1].size()) << "the layouts differ";
     std::size_t both = 0;
     for (std::size_t i = 0; i < irradiance[0].size(); ++i) {
-        // Texels all of which are inside the box are invalid by their void rays if it is single-sided.
+        // Texels all of which are inside the box are invalid by the backs they see if it is single-sided.
         if (irradiance[0][i] < 0.0f) continue;
         ++both;
         EXPECT_NEAR(irradiance[0][i], irradiance[1][i], 0.05f) << i;  // 256 paths: noise below 0.015

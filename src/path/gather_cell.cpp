@@ -12,29 +12,20 @@
 namespace lumel {
 namespace {
 
-// Edges of a cell. Points of a cell whose rays meet backs so near are below what stands on it; its light is that of its
-// other points.
-constexpr float kNearBack = 2.0f;
-
 // What reaches a cell by itself, and its links.
 class CellSink {
 public:
     static constexpr bool kFromCell = true, kSunsKnown = true, kMayBeGuided = false;
 
-    // `near`: metres, to backs that hide the point.
-    CellSink(std::span<CellLink> links, CellGather& gather, float near) : links_(links), gather_(gather), near_(near) {}
+    CellSink(std::span<CellLink> links, CellGather& gather) : links_(links), gather_(gather) {}
 
     void begin(std::span<const PathStart> starts, std::uint32_t first) {
         starts_ = starts;
         first_ = first;
         gather_.traced += static_cast<std::uint32_t>(starts.size());
-        gather_.count += static_cast<std::uint32_t>(starts.size());
         gather_.open += static_cast<std::uint32_t>(starts.size());
     }
-    void back(std::uint32_t, float distance, float) {
-        --gather_.open;
-        if (distance <= near_) --gather_.count;
-    }
+    void back(std::uint32_t, float) { --gather_.open; }
     void free_path(std::uint32_t, Vec3, float, float, bool) {}
     void light(std::uint32_t lane, Layer, Vec3 direction, Vec3 value) {
         sum_ += value * (std::max(0.0f, dot(direction, starts_[lane].normal)) * kInvPi);
@@ -48,13 +39,12 @@ public:
                 std::min(65535.0f, share[c] * (cosine * kInvPi / pdf * CellLink::kOne) + 0.5f));
     }
     void end() {
-        if (gather_.count > 0) gather_.direct = sum_ * (1.0f / static_cast<float>(gather_.count));
+        if (gather_.traced > 0) gather_.direct = sum_ * (1.0f / static_cast<float>(gather_.traced));
     }
 
 private:
     std::span<CellLink> links_;
     CellGather& gather_;
-    float near_;
     std::span<const PathStart> starts_;
     std::uint32_t first_ = 0;
     Vec3 sum_{};
@@ -78,7 +68,7 @@ void PathIntegrator::gather_cell(const GatherSite& site, bool back, Workspace& w
         n = keep_open_points(starts, enclosed);
     }
     find_sunlit(std::span(w.surfaces).first(n), true, w);
-    CellSink sink(links, out, kNearBack * site.texel_size);
+    CellSink sink(links, out);
     for (std::uint32_t base = 0; base < links.size(); base += kWavefrontLanes) {
         const auto lanes = std::min<std::uint32_t>(kWavefrontLanes, static_cast<std::uint32_t>(links.size()) - base);
         for (std::uint32_t lane = 0; lane < lanes; ++lane) {

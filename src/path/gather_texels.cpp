@@ -37,9 +37,9 @@ constexpr FootprintToTry kFootprints[] = {{Footprint::whole, {}},
                                           {Footprint::lookup, {{1 - kStrip, 0}, {1, 1}}},
                                           {Footprint::lookup, {{0, 0}, {1, kStrip}}},
                                           {Footprint::lookup, {{0, 1 - kStrip}, {1, 1}}}};
-// Of a texel: with fewer, its noise hides what lookups beside a hidden texel show, and looking for it would take most
-// of the time.
-constexpr std::uint32_t kFewestSamplesForLookups = 16;
+constexpr std::size_t kFirstStrip = 2;
+// Of a texel: a finer look would take most of the time of fewer, whose noise hides what it finds.
+constexpr std::uint32_t kFewestSamplesForStrips = 16;
 constexpr std::size_t kSomePoints = 16;  // of a texel, spread evenly
 constexpr std::uint32_t kFewestSamplesForGuide = 64;
 // Of a texel; its block has seen enough of its lights by then. Each new table begins a new sequence of choices, and a
@@ -83,6 +83,12 @@ void PathIntegrator::begin_texel(const GatherSite& site, Workspace& w, TexelStat
         surface_starts(site.points, std::span(w.sides).first(n), w, texel.surfaces);
         std::fill(w.sides.begin(), w.sides.end(), std::uint8_t{1});
         surface_starts(site.points, std::span(w.sides).first(n), w, texel.back_surfaces);
+        // The lid of a solid has one side: its mean with what is inside would be half as bright.
+        const VisibleStarts finder(transport_.tracer, transport_.geometry, w.rays, w.hits);
+        const bool front_shut = finder.is_shut(std::span(texel.surfaces).first(n), mix32(key + 1));
+        const bool back_shut = finder.is_shut(std::span(texel.back_surfaces).first(n), mix32(key + 2));
+        texel.both_sides = front_shut == back_shut;
+        if (front_shut && !back_shut) texel.surfaces = texel.back_surfaces;
     }
     find_sunlit(std::span(texel.surfaces).first(n), false, w);
     if (texel.both_sides) find_sunlit(std::span(texel.back_surfaces).first(n), false, w);
@@ -114,7 +120,11 @@ std::size_t PathIntegrator::choose_starts(const GatherSite& site, std::uint32_t 
     const VisibleStarts::Points usual{site.valid, site.triangles, site.texel_size};
     if (!site.footprints || finder.all_open(usual, starts.first(n), mix32(key + 1))) return n;
 
-    const std::size_t places = options_.samples < kFewestSamplesForLookups ? 1 : std::size(kFootprints);
+    if (static_cast<std::size_t>(std::popcount(find(n, site.valid, site.triangles).best)) == n) return n;
+
+    const bool few_samples = options_.samples < kFewestSamplesForStrips;
+    const std::size_t places = few_samples ? kFirstStrip : std::size(kFootprints);
+    const std::uint32_t refinements = few_samples ? 0 : kMostRefinements;
     for (const FootprintToTry& place : std::span(kFootprints).first(places)) {
         const auto read_part = [&](const FootprintPart& part) {
             site.footprints->read(site.texel, place.footprint, part, w.points);
@@ -124,7 +134,7 @@ std::size_t PathIntegrator::choose_starts(const GatherSite& site, std::uint32_t 
         VisibleStarts::Found found;
         FootprintPart found_in;
         std::optional<FootprintPart> part = place.part;
-        for (std::uint32_t attempt = 0; attempt <= kMostRefinements && part; ++attempt) {
+        for (std::uint32_t attempt = 0; attempt <= refinements && part; ++attempt) {
             read_part(*part);
             const VisibleStarts::Found now =
                 w.points.count == 0 ? VisibleStarts::Found{} : find(w.points.count, w.points.valid, w.points.triangles);
@@ -134,7 +144,7 @@ std::size_t PathIntegrator::choose_starts(const GatherSite& site, std::uint32_t 
             found = now;
             found_in = *part;
             part = part_to_refine(*part, w.points.valid, found);
-            if (!part || attempt == kMostRefinements) return keep_starts(starts.first(w.points.count), found.best);
+            if (!part || attempt == refinements) return keep_starts(starts.first(w.points.count), found.best);
         }
         if (found.best == 0) continue;
         read_part(found_in);  // a finer look at it found nothing

@@ -98,7 +98,7 @@ TEST(GuideStatistics, GuidedPathsTeachTheSameAsOthers) {
 }
 
 // A room that light enters by a hole in the ceiling. A wall of one side stands in it: the paths of texels behind that
-// meet its back are void.
+// meet its back are black.
 Scene room_below_a_hole() {
     test::SceneBuilder b;
     const auto white = b.material({0.5f, 0.5f, 0.5f});
@@ -138,7 +138,7 @@ TEST(GuidedTexels, HaveTheSameMeanAndLessNoise) {
         const float a = test::total_irradiance(runs[0], i).y, b = test::total_irradiance(runs[1], i).y;
         return Totals{static_cast<double>(a + b) / 2, static_cast<double>((a - b) * (a - b)) / 4,
                       static_cast<double>(runs[0].variance[i].y + runs[1].variance[i].y) / 4,
-                      static_cast<double>(runs[0].count[i] + runs[1].count[i]) / 512.0};
+                      static_cast<double>(runs[0].open[i] + runs[1].open[i]) / 512.0};
     };
     Totals p, g;
     std::size_t compared = 0;
@@ -153,7 +153,7 @@ TEST(GuidedTexels, HaveTheSameMeanAndLessNoise) {
         ++compared;
     }
     ASSERT_GT(compared, 3000u);
-    ASSERT_LT(p.counted, 0.995 * static_cast<double>(compared)) << "no path is void: half of this test is missing";
+    ASSERT_LT(p.counted, 0.995 * static_cast<double>(compared)) << "no path meets a back: half of this test is missing";
     EXPECT_LT(g.noise, 0.75 * p.noise);
     // The stated variance takes samples as independent: more than there is.
     EXPECT_LT(std::fabs(g.mean - p.mean), 4.0 * std::sqrt(p.stated + g.stated));

@@ -119,7 +119,7 @@ public:
         std::fill(irradiance.begin(), irradiance.end(), Vec3{});
         std::fill(met_back.begin(), met_back.end(), std::uint8_t{0});
     }
-    void back(std::uint32_t lane, float, float) {
+    void back(std::uint32_t lane, float) {
         if (!met_back_.empty()) met_back_[lane] = 1;
     }
     void free_path(std::uint32_t, Vec3, float, float, bool) {}

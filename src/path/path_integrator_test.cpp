@@ -182,14 +182,14 @@ TEST(TexelSink, MeanAndErrorAreThoseOfAllSamples) {
     const auto pi = static_cast<float>(M_PI);
     for (std::uint32_t lane = 0; lane < 3; ++lane)
         sink.light(lane, Layer::sky, up, Vec3{1, 1, 1} * (pi * static_cast<float>(lane + 1)));
-    sink.back(3, 1.0f, 1.0f);
+    sink.back(3, 1.0f);
     sink.light(3, Layer::sky, up, Vec3{1, 1, 1} * (pi * 2.0f));
     sink.end();
     RadianceSums sums;
     sums.resize(1);
     sink.store(sums, 0);
-    EXPECT_EQ(sums.count[0], 3u);
-    EXPECT_EQ(sums.traced[0], 4u);
+    EXPECT_EQ(sums.open[0], 3u);
+    EXPECT_EQ(sums.count[0], 4u);
     const float mean = 2.0f;
     EXPECT_NEAR(sums.layers[0][1].irradiance.x, mean, 1e-6f);
     EXPECT_NEAR(sums.variance[0].x, 2.0 / (4.0 * 3.0), 1e-6);  // sum (x - mean)^2 / (n (n - 1))

@@ -38,7 +38,7 @@ struct NoisyPage {
                 error.push_back(0.5f * (a + b));
                 sums.half_difference[i] = Vec3{1, 1, 1} * (a - b);
                 sums.variance[i] = Vec3{1, 1, 1} * (kOverstated * sigma * sigma);
-                sums.traced[i] = sums.count[i] = 64;
+                sums.count[i] = sums.open[i] = 64;
             }
     }
     // Share of a half's texels whose 95 % interval contains the truth.
@@ -64,8 +64,8 @@ TEST(PooledVariance, ItsIntervalsContainTheTruthInEachChart) {
 TEST(PooledVariance, LeavesTexelsOfOneSampleAndInvalidOnesOut) {
     NoisyPage page(0.1f, 0.1f);
     const std::size_t single = 10 * NoisyPage::kEdge + 10, invalid = 10 * NoisyPage::kEdge + 12;
-    page.sums.traced[single] = page.sums.count[single] = 1;
-    page.sums.count[invalid] = 3;
+    page.sums.count[single] = page.sums.open[single] = 1;
+    page.sums.open[invalid] = 3;
     for (const std::size_t i : {single, invalid}) {
         page.sums.half_difference[i] = {1e6f, 1e6f, 1e6f};
         page.sums.variance[i] = {7, 7, 7};

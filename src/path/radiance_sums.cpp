@@ -10,7 +10,7 @@ void RadianceSums::reserve(std::size_t texels) {
     ambient_occlusion.reserve(texels);
     bent_normal.reserve(texels);
     count.reserve(texels);
-    traced.reserve(texels);
+    open.reserve(texels);
 }
 
 void RadianceSums::resize(std::size_t texels) {
@@ -21,14 +21,14 @@ void RadianceSums::resize(std::size_t texels) {
     ambient_occlusion.resize(texels);
     bent_normal.resize(texels);
     count.resize(texels);
-    traced.resize(texels);
+    open.resize(texels);
 }
 
 void RadianceSums::clear(std::size_t texel) {
     layers[texel] = {};
     variance[texel] = half_difference[texel] = bent_normal[texel] = {};
     sky_visibility[texel] = ambient_occlusion[texel] = 0.0f;
-    count[texel] = traced[texel] = 0;
+    count[texel] = open[texel] = 0;
 }
 
 }  // namespace lumel

@@ -31,7 +31,7 @@ public:
         for (std::size_t lane = 0; lane < starts.size(); ++lane) sample_[lane] = {};
     }
 
-    void back(std::uint32_t, float, float weight) { backs_ += static_cast<double>(weight); }
+    void back(std::uint32_t, float weight) { backs_ += static_cast<double>(weight); }
 
     void light(std::uint32_t lane, Layer of, Vec3 direction, Vec3 value) {
         const auto layer = static_cast<std::size_t>(of);
@@ -81,7 +81,7 @@ public:
     [[nodiscard]] TexelProgress progress() const {
         TexelProgress out;
         out.samples = traced_;
-        out.valid = halves_[1].traced > 0 && 2.0 * backs_ < traced_;
+        out.valid = halves_[1].traced > 0 && 2 * open() >= traced_;
         if (!out.valid) return out;
         out.mean = luminance_.mean(traced_);
         out.half_difference = luminance_of(halves_[0]) - luminance_of(halves_[1]);
@@ -95,8 +95,8 @@ public:
     }
 
     void store(RadianceSums& out, std::size_t index) const {
-        out.traced[index] = traced_;
-        out.count[index] = static_cast<std::uint32_t>(std::max(0.0, traced_ - backs_) + 0.5);
+        out.count[index] = traced_;
+        out.open[index] = open();
         if (traced_ == 0) return;
         const double inverse = 1.0 / traced_;
         for (std::size_t layer = 0; layer < kLayerCount; ++layer) {
@@ -109,7 +109,7 @@ public:
         }
         for (std::size_t c = 0; c < 3; ++c) {
             out.variance[index][c] = static_cast<float>(channels_[c].variance(traced_));
-            out.half_difference[index][c] = half_difference(c, out.variance[index][c]);
+            out.half_difference[index][c] = half_difference(c);
             out.bent_normal[index][c] = static_cast<float>(bent_[c] * inverse);
         }
         out.sky_visibility[index] = static_cast<float>(std::min(1.0, sky_visibility_ * inverse));
@@ -117,6 +117,10 @@ public:
     }
 
 private:
+    [[nodiscard]] std::uint32_t open() const {
+        return static_cast<std::uint32_t>(std::max(0.0, traced_ - backs_) + 0.5);
+    }
+
     template <class Number>
     struct LayerSums {
         std::array<std::array<Number, kShCoefficients>, 3> sh{};  // by channel: the nine add up as vectors
@@ -140,9 +144,9 @@ private:
         double sum_ = 0.0, squares_ = 0.0;
     };
 
-    // Where a half has no sample that counts it is unknown: what independent samples of that variance would give.
-    [[nodiscard]] float half_difference(std::size_t c, float variance) const {
-        if (halves_[1].traced == 0) return 2.0f * std::sqrt(variance);
+    // Of one sample it is unknown, as its variance is.
+    [[nodiscard]] float half_difference(std::size_t c) const {
+        if (halves_[1].traced == 0) return 0.0f;
         return static_cast<float>(halves_[0].mean(c) - halves_[1].mean(c));
     }
 

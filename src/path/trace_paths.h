@@ -148,12 +148,12 @@ private:
 
 }  // namespace path_detail
 
-// Sink: back(lane, distance, weight), where the first ray meets the back of a single-sided surface (weight: density
-// without a guide over that with it); free_path(lane, direction, pdf, distance or infinity, sky);
-// light(lane, layer, direction, radiance over density). kSunsKnown: PathStart::sunlit is filled in. kFromCell: the
-// start is a cell's, whose light is what a bounce sees of it, and paths that end at a cell are links: link(lane,
-// direction, pdf, cell, share of its irradiance). kMayBeGuided: there may be guides, and first_radiance, first_sampled
-// and first_light of the workspace are filled in.
+// Sink: back(lane, weight), where the first ray meets the back of a single-sided surface, which is black (weight:
+// density without a guide over that with it); free_path(lane, direction, pdf, distance or infinity, sky); light(lane,
+// layer, direction, radiance over density). kSunsKnown: PathStart::sunlit is filled in. kFromCell: the start is a
+// cell's, whose light is what a bounce sees of it, and paths that end at a cell are links: link(lane, direction, pdf,
+// cell, share of its irradiance). kMayBeGuided: there may be guides, and first_radiance, first_sampled and first_light
+// of the workspace are filled in.
 template <class Sink>
 void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w, Sink& sink,
                                  const Guides& guides) const {
@@ -195,16 +195,13 @@ void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w
     }
     transport_.tracer.closest(std::span(w.rays).first(count), std::span(w.hits).first(count));
 
-    // Backs of single-sided surfaces are black.
-    std::size_t alive = 0;
+    const auto is_black_back = [&](const Hit& hit) {
+        return !hit.missed() && hit.back_face && !(geometry.triangles[hit.triangle].flags & kDoubleSided);
+    };
+    std::size_t alive = count;
     for (std::uint32_t lane = 0; lane < count; ++lane) {
-        const Hit& hit = w.hits[lane];
-        if (!hit.missed() && hit.back_face && !(geometry.triangles[hit.triangle].flags & kDoubleSided)) {
-            sink.back(lane, hit.t, 1.0f / w.first_draw[lane].density);
-        } else {
-            w.hits[alive] = hit;
-            w.lanes[alive++] = lane;
-        }
+        w.lanes[lane] = lane;
+        if (is_black_back(w.hits[lane])) sink.back(lane, 1.0f / w.first_draw[lane].density);
     }
 
     // Light that reaches the start from sampled directions.
@@ -283,7 +280,7 @@ void PathIntegrator::trace_paths(std::span<const PathStart> starts, Workspace& w
                 continue;
             }
             const WorldTriangle& triangle = geometry.triangles[hit.triangle];
-            if (hit.back_face && !(triangle.flags & kDoubleSided)) continue;
+            if (is_black_back(hit)) continue;
             if (triangle.flags & kEmissive)
                 arrive(lane, Layer::direct,
                        lights.emissive(receiver, hit.triangle, hit.b1, hit.b2, vertex.direction, hit.t, hit.back_face,

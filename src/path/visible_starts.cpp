@@ -127,9 +127,12 @@ void VisibleStarts::look_around(std::span<const SurfaceStart> starts, std::size_
     tracer_.closest(rays_.subspan(first, count), hits_.subspan(first, count));
 }
 
+bool VisibleStarts::is_single_sided_back(const Hit& hit) const {
+    return !hit.missed() && hit.back_face && (geometry_.triangles[hit.triangle].flags & kDoubleSided) == 0;
+}
+
 bool VisibleStarts::is_near_back(const Hit& hit, const Points& points) const {
-    return !hit.missed() && hit.back_face && hit.t <= kEnclosureReach * points.texel_size &&
-           (geometry_.triangles[hit.triangle].flags & kDoubleSided) == 0;
+    return hit.t <= kEnclosureReach * points.texel_size && is_single_sided_back(hit);
 }
 
 bool VisibleStarts::rows_are_free(const Points& points, std::span<const SurfaceStart> starts, float lift) const {
@@ -192,6 +195,9 @@ VisibleStarts::Found VisibleStarts::find(const Points& points, std::span<const S
         std::array<std::uint64_t, kSamplesPerTexel> members{};
         for (std::size_t i = 0; i < n; ++i)
             members[components.root(static_cast<std::uint8_t>(i))] |= std::uint64_t{1} << i;
+        // Of several, a point whose own ray met a back is the likeliest to be on the wrong side.
+        const bool is_cut = std::ranges::find(members, first_bits(n)) == members.end();
+        const std::uint64_t hidden = points.enclosed | (is_cut ? backs : 0);
         Found found;
         float most = 0.0f;
         for (const std::uint64_t m : members) {
@@ -200,8 +206,7 @@ VisibleStarts::Found VisibleStarts::find(const Points& points, std::span<const S
                 asked == 0 ? 0.0f : static_cast<float>(std::popcount(m & backs)) / static_cast<float>(asked);
             const float weight = static_cast<float>(std::popcount(m & ~points.enclosed)) *
                                  std::max(0.0f, 1.0f - share / parting.most_backs);
-            // A point whose own ray met a back is the likeliest to be hidden.
-            const std::uint64_t open = m & ~points.enclosed & ~backs;
+            const std::uint64_t open = m & ~hidden;
             if (weight > 0.0f) found.open |= open;
             if (weight <= most) continue;
             most = weight;
@@ -210,6 +215,13 @@ VisibleStarts::Found VisibleStarts::find(const Points& points, std::span<const S
         if (found.best != 0) return found;
     }
     return {};
+}
+
+bool VisibleStarts::is_shut(std::span<const SurfaceStart> starts, std::uint32_t key) const {
+    look_around(starts, 0, key);
+    const auto backs =
+        std::ranges::count_if(hits_.first(starts.size()), [&](const Hit& hit) { return is_single_sided_back(hit); });
+    return 2 * static_cast<std::size_t>(backs) > starts.size();
 }
 
 std::optional<FootprintPart> part_to_refine(const FootprintPart& part, std::uint64_t valid,

@@ -37,9 +37,12 @@ public:
         std::uint64_t open = 0;  // all open ones
     };
     // Open are points that are not enclosed, in a component of which less than three in a hundred of the rays (one a
-    // point) meet a back within the reach of an enclosure (farther ones are seen from the open), and whose own does
-    // not. Where there are none, a closer look allows twelve in a hundred. `key`: of random directions.
+    // point) meet a back within the reach of an enclosure: farther ones are seen from the open. Where there are none, a
+    // closer look allows twelve in a hundred. `key`: of random directions.
     [[nodiscard]] Found find(const Points& points, std::span<const SurfaceStart> starts, std::uint32_t key) const;
+
+    // Whether more than half of the rays from these starts meet backs of single-sided surfaces.
+    [[nodiscard]] bool is_shut(std::span<const SurfaceStart> starts, std::uint32_t key) const;
 
 private:
     // A ray of each start from `first` on, over its hemisphere, and what it meets: in hits_.
@@ -48,7 +51,8 @@ private:
     [[nodiscard]] bool rows_are_free(const Points& points, std::span<const SurfaceStart> starts, float lift) const;
     class Components;
     [[nodiscard]] Components parted(const Points& points, std::span<const SurfaceStart> starts, float lift) const;
-    // Of a single-sided surface, within reach of an enclosure.
+    [[nodiscard]] bool is_single_sided_back(const Hit& hit) const;
+    // That, within reach of an enclosure.
     [[nodiscard]] bool is_near_back(const Hit& hit, const Points& points) const;
 
     const Tracer& tracer_;

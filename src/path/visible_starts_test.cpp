@@ -89,6 +89,20 @@ TEST(VisibleStarts, ASlopeThatTheFloorEntersPartsThePoints) {
     EXPECT_EQ(texel.find(traced).best, texel.points([](Vec3 p) { return p.x > 0.13f; }));
 }
 
+// The back of a card that a few of the points see hides none of them.
+TEST(VisibleStarts, ACardBesideATexelHidesNothing) {
+    test::SceneBuilder b;
+    const auto grey = b.material({0.5f, 0.5f, 0.5f});
+    add_floor(b, grey);
+    b.object("card", grey, [](Mesh& m) { test::add_quad(m, {1, 0, 0.7f}, {0, 0, -1}, {0, 0.6f, 0}); });  // faces +x
+    Context context(1);
+    const test::TracedScene traced(b.build(), context);
+    FloorTexel texel;
+    const VisibleStarts::Found found = texel.find(traced);
+    EXPECT_EQ(found.best, ~std::uint64_t{0});
+    EXPECT_EQ(found.open, ~std::uint64_t{0});
+}
+
 TEST(VisibleStarts, NothingIsOpenInsideASolid) {
     test::SceneBuilder b;
     const auto grey = b.material({0.5f, 0.5f, 0.5f});

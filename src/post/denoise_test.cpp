@@ -36,7 +36,7 @@ struct NoisyPage {
             }
         sums.resize(texels.size());
         for (std::size_t i = 0; i < sums.size(); ++i) {
-            sums.traced[i] = sums.count[i] = 64;
+            sums.count[i] = sums.open[i] = 64;
             sums.variance[i] = Vec3{1, 1, 1} * (sigma * sigma);
             LayerMoments& sky = sums.layers[i][static_cast<std::size_t>(Layer::sky)];
             sky.irradiance = Vec3{1, 1, 1} * (truth[i] + noise(random));
@@ -171,7 +171,7 @@ TEST(Denoise, KeepsDimEdgesBesideBrightLight) {
 
 TEST(Denoise, WeighsAllCoefficientsAlikeAndLeavesInvalidTexelsAlone) {
     NoisyPage page(32, 32, 0.1f, [](int, int) { return 1.0f; });
-    page.sums.count[100] = 3;
+    page.sums.open[100] = 3;
     page.sums.layers[100][1].irradiance = {50, 50, 50};
     ASSERT_TRUE(run(page).ok());
     EXPECT_EQ(page.value(100), 50.0f);

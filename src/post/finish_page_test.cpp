@@ -9,7 +9,7 @@ namespace lumel {
 namespace {
 
 // A page with texels at the given pixels; texel i has irradiance value[i] in every layer's first channel; value < 0
-// means invalid (all paths void).
+// means invalid (its rays met backs).
 struct Page {
     TexelBuffer buffer;
     RadianceSums sums;
@@ -27,8 +27,8 @@ struct Page {
             buffer.chart.push_back(0);
             buffer.normal.push_back(i % 2 == 0 ? Vec3{0.6f, 0, 0.8f} : Vec3{-0.6f, 0, 0.8f});
             buffer.texel_at[std::size_t{pixels[i][1]} * width + pixels[i][0]] = static_cast<std::uint32_t>(i);
-            sums.traced[i] = 10;
-            sums.count[i] = value[i] < 0.0f ? 5 : 6;  // exactly half void is invalid already
+            sums.count[i] = 10;
+            sums.open[i] = value[i] < 0.0f ? 4 : 5;  // exactly half is valid still
             for (LayerMoments& layer : sums.layers[i]) layer.irradiance.x = std::max(0.0f, value[i]);
             surface.albedo.push_back({static_cast<float>(i), 0, 0});
             surface.emission.push_back({});
@@ -168,8 +168,8 @@ TEST(FinishPage, DilationGrowsInPlace) {
         sums.reserve(room);
         sums.resize(page.sums.size());
         sums.layers.assign(page.sums.layers.begin(), page.sums.layers.end());
+        sums.open = page.sums.open;
         sums.count = page.sums.count;
-        sums.traced = page.sums.traced;
         const auto* before = sums.layers.data();
         Context context(1);
         const auto map = finish_page(page.buffer, std::move(sums), page.surface, {}, rings, context);

@@ -19,7 +19,7 @@ struct GatheredPage {
         RadianceSums sums;
         sums.resize(page.texels.size());
         for (std::size_t i = 0; i < sums.size(); ++i) {
-            sums.traced[i] = sums.count[i] = 64;
+            sums.count[i] = sums.open[i] = 64;
             const std::vector<SamplePoint> points = page.samples(i);
             for (const SamplePoint& p : points) {
                 const auto uv = page.uv(p.triangle);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "math/constants.h"
 #include "support/traced_scene.h"
 
 namespace lumel {
@@ -91,6 +92,28 @@ TEST(Picture, WhatHasNoTexelsIsTraced) {
     EXPECT_EQ(with.data, without.data);
     // A free wall under a white sky: E/pi = 1 on all that is seen.
     expect_everywhere(with, kNearGlow + Vec3{0.5f, 0.25f, 0.125f}, 0.05f);  // 64 paths: 1 % of noise
+}
+
+// A floor before the back of a wall: the sun on it is what it is in the open.
+TEST(Picture, ABackDoesNotBrightenTheSun) {
+    Context context(1);
+    test::SceneBuilder b;
+    b.object("floor", b.material({0.5f, 0.5f, 0.5f}), [](Mesh& m) {
+        test::add_quad(m, {-4, 0, 4}, {4, 0, 0}, {0, 0, -8});
+    });
+    b.object("wall", b.material({0.5f, 0.5f, 0.5f}), [](Mesh& m) {
+        test::add_quad(m, {0, 0, 4}, {0, 0, -8}, {0, 3, 0});
+    });
+    Light& sun = b.light(LightShape::sun);
+    sun.direction = normalize(Vec3{1, -1, 0});
+    sun.intensity = {4, 4, 4};
+    const test::TracedScene traced(b.build(), context);
+    const float light = 0.5f * 4.0f * std::sqrt(0.5f) / kPi;
+    const Camera camera = look_at({-1, 2, 0.01f}, {-1, 0, 0}, 0.5f);
+    PathOptions path;
+    path.bounces = 0;
+    const Image image = render_picture(traced.transport, path, camera, {6, 4, 16}, nullptr, context).value();
+    expect_everywhere(image, {light, light, light}, kRounding);
 }
 
 TEST(Picture, TheSameBitsForAnyNumberOfThreads) {

@@ -61,7 +61,7 @@ struct Layout {
         sums.resize(texels.size());
         for (std::size_t i = 0; i < texels.size(); ++i) {
             const float light = 1.0f + static_cast<float>(texels.chart[i]);
-            sums.count[i] = sums.traced[i] = 1;
+            sums.open[i] = sums.count[i] = 1;
             for (const std::size_t l : {0u, 1u}) {
                 sums.layers[i][l].irradiance = Vec3{light, light, light} * (l == 0 ? 1.0f : 2.0f);
                 sums.layers[i][l].sh[0] = sums.layers[i][l].irradiance;

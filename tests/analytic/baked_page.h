@@ -21,6 +21,7 @@ struct BakedTexel {
     Vec3 irradiance;  // I = E/pi, all layers
     Vec3 error;       // standard error, as the bake states it
     std::array<Vec3, kLayerCount> layers;
+    float ambient_occlusion;
 };
 
 inline std::vector<BakedTexel> bake_texels(const Scene& scene, const BakeOptions& options) {
@@ -32,7 +33,7 @@ inline std::vector<BakedTexel> bake_texels(const Scene& scene, const BakeOptions
             for (std::uint32_t x = 0; x < page.width; ++x) {
                 const std::uint32_t i = page.texel_at[std::size_t{y} * page.width + x];
                 if (i == kNone || page.coverage[i] != Coverage::baked) continue;
-                BakedTexel texel{x, y, {}, {}, {}};
+                BakedTexel texel{x, y, {}, {}, {}, page.texels.ambient_occlusion[i]};
                 for (std::size_t l = 0; l < kLayerCount; ++l) {
                     texel.layers[l] = page.texels.layers[i][l].irradiance;
                     texel.irradiance += texel.layers[l];

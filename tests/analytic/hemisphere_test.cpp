@@ -110,6 +110,98 @@ TEST(Hemisphere, TheBackOfAWallDoesNotBrightenTheSun) {
     for (const test::BakedTexel& texel : texels) ASSERT_NEAR(texel.irradiance.x, expected, 1e-5f * expected);
 }
 
+// Light that a ray meets before it meets a back: the ray's share of it must not be lost. Lamps that hang below a cover
+// whose back is seen light the floor as below a cover that is black on both sides; two of them, so that a light sample
+// has half of the chance, and what the rays bring has the more weight.
+TEST(Hemisphere, ALampBeforeABackKeepsAllItsLight) {
+    const auto mean = [](bool double_sided) {
+        test::SceneBuilder builder;
+        builder.object("floor", builder.material({0.5f, 0.5f, 0.5f}), [](Mesh& mesh) {
+            test::add_quad(mesh, {-0.5f, 0, 0.5f}, {1, 0, 0}, {0, 0, -1});
+        });
+        builder.object(
+            "cover", builder.material({0, 0, 0}, {}, double_sided),
+            [](Mesh& mesh) {
+                test::add_quad(mesh, {-1, 1.01f, 0.5f}, {2, 0, 0}, {0, 0, -1});
+            },
+            {}, NodeClass::occluder);
+        for (const float side : {-0.5f, 0.5f}) {
+            Light& lamp = builder.light(LightShape::rectangle);
+            lamp.position = {side, 1.0f, 0};
+            lamp.direction = {0, -1, 0};
+            lamp.half_u = {0.45f, 0, 0};
+            lamp.half_v = {0, 0, 0.45f};
+            lamp.intensity = {2, 2, 2};
+        }
+        BakeOptions options;
+        options.texels_per_metre = 12;
+        options.samples = 256;
+        options.bounces = 0;
+        const auto texels = test::bake_texels(builder.build(), options);
+        EXPECT_GT(texels.size(), 100u);
+        double sum = 0.0;
+        for (const test::BakedTexel& texel : texels) sum += texel.irradiance.x;
+        return sum / static_cast<double>(std::max<std::size_t>(1, texels.size()));
+    };
+    const double black = mean(true), back = mean(false);
+    EXPECT_GT(black, 0.1);
+    // More than a hundred texels of 256 samples, each within a few percent.
+    EXPECT_NEAR(back / black, 1.0, 3e-3);
+}
+
+// A wall further than --ao-distance does not occlude, whichever side of it is seen.
+TEST(Hemisphere, AFarBackDoesNotOcclude) {
+    test::SceneBuilder builder;
+    const std::uint32_t grey = builder.material({0.5f, 0.5f, 0.5f});
+    builder.object("floor", grey, [](Mesh& mesh) { test::add_quad(mesh, {-4, 0, 1}, {2, 0, 0}, {0, 0, -2}); });
+    builder.object(
+        "wall", grey,
+        [](Mesh& mesh) {
+            test::add_quad(mesh, {0, 0, 9}, {0, 0, -18}, {0, 9, 0});
+        },
+        {}, NodeClass::occluder);
+    builder.scene().sky.color = {1, 1, 1};
+    BakeOptions options;
+    options.texels_per_metre = 4;
+    options.samples = 64;
+    options.ao_distance = 1.0;
+    const auto texels = test::bake_texels(builder.build(), options);
+    ASSERT_GT(texels.size(), 40u);
+    double sum = 0.0;
+    for (const test::BakedTexel& texel : texels) sum += static_cast<double>(texel.ambient_occlusion);
+    // At 1 the noise is cut off, a twentieth for a texel of 64 samples. Were backs in the way, it would be some 0.6.
+    EXPECT_GT(sum / static_cast<double>(texels.size()), 0.97);
+}
+
+// With --two-sided the lid of a crate has the light of its outside: inside there is nothing but backs.
+TEST(Hemisphere, ALidHasOneSide) {
+    test::SceneBuilder builder;
+    builder.object(
+        "crate", builder.material({0.5f, 0.5f, 0.5f}),
+        [](Mesh& mesh) {  // open above
+            const Vec3 low{-0.5f, 0, -0.5f}, x{1, 0, 0}, y{0, 0.8f, 0}, z{0, 0, 1};
+            test::add_quad(mesh, low, x, z);
+            test::add_quad(mesh, low, y, x);
+            test::add_quad(mesh, low + z, x, y);
+            test::add_quad(mesh, low, z, y);
+            test::add_quad(mesh, low + x, y, z);
+        },
+        {}, NodeClass::occluder);
+    builder.object("lid", builder.material({0.5f, 0.5f, 0.5f}, {}, true), [](Mesh& mesh) {
+        test::add_quad(mesh, {-0.5f, 0.8f, 0.5f}, {1, 0, 0}, {0, 0, -1});
+    });
+    builder.scene().sky.color = {1, 1, 1};
+    BakeOptions options;
+    options.texels_per_metre = 8;
+    options.samples = 128;
+    options.two_sided = true;
+    const auto texels = test::bake_texels(builder.build(), options);
+    ASSERT_GT(texels.size(), 20u);
+    double sum = 0.0;
+    for (const test::BakedTexel& texel : texels) sum += texel.irradiance.x;
+    EXPECT_NEAR(sum / static_cast<double>(texels.size()), 1.0, 0.02);
+}
+
 // Twice the direct light has twice its standard error; light that the files leave out has no part in it.
 TEST(Hemisphere, TheStatedErrorFollowsScalesAndInclude) {
     const auto error = [](float direct_scale, bool indirect) {
