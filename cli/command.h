@@ -51,12 +51,16 @@ Result<std::uint64_t> parse_bytes(const std::string& text, const std::string& op
 class TexelOptions {
 public:
     void declare(CLI::App& app);
-    // Fills preset, density, resolution, largest page, TEXCOORD_1 and reads the layout to keep. Errors: usage, and
+    // Fills preset, density, resolution, largest page, TEXCOORD_1, lookups and reads the layout to keep. Errors: usage,
+    // and
     // those of the file.
     Status read(BakeOptions& options) const;
 
 private:
-    std::string preset_ = "medium", resolution_, uv1_ = "automatic", atlas_;
+    std::string preset_ = "medium", resolution_, uv1_ = "automatic", atlas_, filter_ = "bilinear",
+                pages_ = "auto";
+    std::uint32_t mips_ = 0, block_ = 1;
+    const CLI::Option *filter_option_ = nullptr, *mips_option_ = nullptr, *block_option_ = nullptr;
     BakeOptions values_;
 };
 

@@ -113,7 +113,7 @@ std::uint64_t memory_for_views(const BakeOptions& options, const BakeReport& rep
     if (options.max_memory_bytes == 0) return 0;
     std::uint64_t most = 0;
     for (const PageReport& page : report.pages)
-        most = std::max(most, page_memory({page.width, page.height}, report.threads));
+        most = std::max(most, page_memory({page.width, page.height}, options.mips.value_or(0), report.threads));
     return most;
 }
 
@@ -135,6 +135,12 @@ void print_reached(const BakeReport& report, const BakeOptions& options) {
                 100.0 * report.share_within_error, options.error, options.confidence,
                 static_cast<double>(report.samples) / static_cast<double>(std::max<std::uint64_t>(1, report.texels)),
                 report.samples_per_texel);
+}
+
+void print_collapsed(const BakeReport& report) {
+    std::printf("%llu of %llu charts are even enough to be as small as can be\n",
+                static_cast<unsigned long long>(report.collapsed_charts),
+                static_cast<unsigned long long>(report.charts));
 }
 
 void print_summary(const BakeReport& report, const std::string& folder) {
@@ -191,6 +197,7 @@ Status run(const Options& options) {
     run_context.finish();
     print_summary(report, options.output);
     if (bake_options.atlas) print_kept(kept, report.charts, *bake_options.atlas);
+    if (bake_options.collapse > 0.0) print_collapsed(report);
     print_reached(report, bake_options);
     print_files(options.output, options.views);
     return success();
@@ -218,6 +225,11 @@ Run add_bake(CLI::App& app) {
         ->group(texels);
     app.add_option("--seams", options->seams, "on or off: both sides of a seam show the same light")
         ->check(CLI::IsMember({"on", "off"}))
+        ->group(texels);
+
+    app.add_option("--collapse", values.collapse,
+                   "Charts whose light spreads by less than this share of its mean become as small as can be (0: none)")
+        ->check(between(0.0, 1.0))
         ->group(texels);
 
     const std::string transport = "Transport";

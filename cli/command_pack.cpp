@@ -7,13 +7,15 @@
 #include "base/try.h"
 #include "command.h"
 #include "io/mask_file.h"
+#include "io/mask_groups.h"
+#include "pack/pack_groups.h"
 #include "pack/pack_pages.h"
 
 namespace lumel::cli {
 namespace {
 
 struct Options {
-    std::string file, orientations = "auto", progress = "auto";
+    std::string file, groups, orientations = "auto", progress = "auto";
     std::uint32_t width = 0, max_page = 0;
     unsigned threads = 0;
     bool json = false;
@@ -69,6 +71,18 @@ Figures figures_of(const PagePacking& packing, double cpu_seconds) {
     return out;
 }
 
+std::string charts_json(const std::vector<PackedChart>& charts) {
+    std::string out = " \"charts\": [";
+    char line[160];
+    for (std::size_t i = 0; i < charts.size(); ++i) {
+        const PackedChart& c = charts[i];
+        std::snprintf(line, sizeof line, "%s\n  {\"page\": %u, \"x\": %u, \"y\": %u, \"orientation\": %u}",
+                      i == 0 ? "" : ",", c.page, c.x, c.y, unsigned{c.orientation});
+        out += line;
+    }
+    return out + "]}\n";
+}
+
 // Text of our own: a million charts are no tree of objects.
 std::string to_json(const PagePacking& packing, const Figures& figures) {
     char line[160];
@@ -83,14 +97,58 @@ std::string to_json(const PagePacking& packing, const Figures& figures) {
                       packing.pages[i].height, static_cast<unsigned long long>(packing.pages[i].used));
         out += line;
     }
-    out += "],\n \"charts\": [";
-    for (std::size_t i = 0; i < packing.charts.size(); ++i) {
-        const PackedChart& c = packing.charts[i];
-        std::snprintf(line, sizeof line, "%s\n  {\"page\": %u, \"x\": %u, \"y\": %u, \"orientation\": %u}",
-                      i == 0 ? "" : ",", c.page, c.x, c.y, unsigned{c.orientation});
+    return out + "],\n" + charts_json(packing.charts);
+}
+
+std::string to_json(const GroupPacking& packing, const Figures& figures) {
+    char line[160];
+    std::snprintf(line, sizeof line, "{\"used\": %llu, \"efficiency\": %.6f, \"cpu_seconds\": %.3f,\n \"pages\": [",
+                  static_cast<unsigned long long>(figures.used), figures.efficiency, figures.cpu_seconds);
+    std::string out = line;
+    for (std::size_t g = 0; g < packing.groups.size(); ++g) {
+        const GroupPage& page = packing.groups[g];
+        std::snprintf(line, sizeof line, "%s{\"width\": %u, \"height\": %u, \"used\": %llu}", g == 0 ? "" : ", ",
+                      page.width, page.height, static_cast<unsigned long long>(page.used));
         out += line;
     }
-    return out + "]}\n";
+    return out + "],\n" + charts_json(packing.charts);
+}
+
+// Each group on a page of its own.
+Result<std::string> run_groups(const std::vector<ChartMask>& masks, const Options& options) {
+    if (options.width != 0)
+        return Error{ErrorCode::usage, "--width does not go with --groups", {}, "pages of groups are about square"};
+    LUMEL_TRY(const MaskGroups groups, read_mask_groups(options.groups, masks.size()));
+    RunContext context(options.threads, options.progress);
+    GroupOptions how;
+    how.max_page = options.max_page;
+    how.orientations = orientations_of(options.orientations);
+    const std::clock_t start = std::clock();
+    const GroupPacking packing = pack_groups(masks, groups.group_of, groups.groups, how, context.get());
+    Figures figures;
+    figures.cpu_seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+    context.finish();
+    if (!packing.complete) return cancelled_error();
+    if (!packing.too_large.empty())
+        return Error{ErrorCode::usage,
+                     "group " + std::to_string(packing.too_large.front()) + " does not fit a page of " +
+                         std::to_string(options.max_page) + " texels",
+                     options.groups, "give a larger --max-page"};
+    double area = 0.0;
+    std::size_t pages = 0;
+    for (const GroupPage& page : packing.groups) {
+        figures.used += page.used;
+        area += static_cast<double>(page.area());
+        pages += page.used > 0 ? 1 : 0;
+    }
+    figures.efficiency = area > 0.0 ? static_cast<double>(figures.used) / area : 0.0;
+    if (options.json) return to_json(packing, figures);
+    char text[200];
+    std::snprintf(text, sizeof text, "%zu charts, %llu texels: %zu page(s) of %.0f texels on average, %.2f %% used, %.2f CPU s\n",
+                  masks.size(), static_cast<unsigned long long>(figures.used), pages,
+                  area / static_cast<double>(std::max<std::size_t>(1, pages)), 100.0 * figures.efficiency,
+                  figures.cpu_seconds);
+    return std::string(text);
 }
 
 Result<std::string> run(const Options& options) {
@@ -102,6 +160,7 @@ Result<std::string> run(const Options& options) {
     if (options.max_page != 0 && options.width > options.max_page)
         return Error{ErrorCode::usage, "--width is larger than --max-page", {}, {}};
     LUMEL_TRY_STATUS(check_sizes(masks, options));
+    if (!options.groups.empty()) return run_groups(masks, options);
     const PackOptions how{options.width, options.max_page, orientations_of(options.orientations)};
     LUMEL_TRY_STATUS(check_memory(masks, how, options));
     RunContext context(options.threads, options.progress);
@@ -128,6 +187,8 @@ Run add_pack(CLI::App& app) {
         ->check(CLI::Range(0u, FreeMap::kMaxWidth));
     app.add_option("--max-page", options->max_page, "Longest edge of a page (0: one page of any height)")
         ->check(CLI::Range(0u, FreeMap::kMaxWidth));
+    app.add_option("--groups", options->groups, "JSON array with the group of each chart: a page for each group")
+        ->check(not_empty());
     app.add_option("--orientations", options->orientations, "How charts may be turned: auto, 1 (not at all), 8")
         ->check(CLI::IsMember({"auto", "1", "8"}));
     app.add_option("--threads", options->threads, "0: one per core")->check(CLI::Range(0u, 1024u));

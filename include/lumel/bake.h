@@ -59,6 +59,7 @@ struct BakeReport {
     // Where charts meet on one surface; 0 with options.seams off. Hidden: something stands there.
     double seam_metres = 0.0;
     std::uint64_t seam_samples = 0, hidden_seam_samples = 0;
+    std::uint64_t collapsed_charts = 0;   // by options.collapse
     double texels_per_metre = 0.0;        // reached, mean over the area; below what was asked where charts were clamped
     double least_texels_per_metre = 0.0;  // of any chart that was not asked for less
     std::uint64_t peak_memory_bytes = 0;  // of the process so far, when this was last looked at
@@ -72,6 +73,7 @@ struct BakeReport {
 struct BakeSink {
     // After charts and atlas, before any page.
     std::function<Status(const WorldGeometry&, const ChartSet&, const Atlas&)> layout;
+    // Each page is followed by its mips from 1 on, where BakeOptions::mips asks for some (Lightmap::mip).
     std::function<Status(const Lightmap&)> page;
     // After the last page, while what its light was traced in still stands: for pictures of the result. The report is
     // that which bake() returns; stages may be added.

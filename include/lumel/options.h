@@ -29,6 +29,12 @@ std::uint32_t sample_budget(const BakeOptions& options);
 
 struct AtlasRecord;  // chart/atlas_record.h
 
+// How renderers look lightmaps up.
+enum class LookupFilter : std::uint8_t {
+    bilinear,  // 2 x 2 texels
+    bicubic,   // 4 x 4: the uniform cubic B-spline, as shaders do it in four bilinear lookups
+};
+
 enum class Uv1Choice : std::uint8_t { automatic, scene, mesh, ignore };
 
 // Which layers the lightmap files sum; the master always keeps all.
@@ -73,9 +79,20 @@ struct BakeOptions {
     std::uint32_t resolution_width = 0, resolution_height = 0;  // of the one page; 0 = free
     std::uint32_t max_page = 4096;                              // largest page edge; 64..16384
     double texels_per_metre = 0.0;                              // 0: from the preset's texel budget
+    // Pages by where objects are, so that what is near each other is on one: as many as max_page asks for, or `pages`.
+    bool page_clusters = false;
+    std::uint32_t pages = 0;  // 1..1024; 0: as many as it takes
+    // Charts whose light varies by less than this share of its mean, noise aside, become as small as can be, and all is
+    // packed anew (bake/collapse.h); 0: none.
+    double collapse = 0.0;
     Uv1Choice uv1 = Uv1Choice::automatic;
     // The layout of an earlier bake (read_atlas_record()): charts that are still the same keep their places. None: new.
     std::shared_ptr<const AtlasRecord> atlas;
+    // What lookups touch, so that no two charts share it (docs/stages/charts.md, "Masks"). Without a value: as in the
+    // layout to keep, else bilinear, no mips, no blocks.
+    std::optional<LookupFilter> filter;
+    std::optional<std::uint32_t> mips;   // lookups in mips 0..this one, 0..6; mips from 1 on are written, too
+    std::optional<std::uint32_t> block;  // 4: no block of 4 x 4 texels holds two charts, for BC formats; 1: it may
     std::optional<bool> denoise;  // post/denoise.h; without a value: the preset's
     std::uint32_t dilate = 2;     // rings of texels filled around charts, 0..64
     bool seams = false;           // both sides of a seam show the same light (docs/stages/seams.md)

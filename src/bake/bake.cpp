@@ -9,6 +9,7 @@
 
 #include "bake/chart_options.h"
 #include "bake/memory.h"
+#include "bake/page_output.h"
 #include "bake/sample_plan.h"
 #include "bake/stage_timer.h"
 #include "base/denormals.h"
@@ -23,6 +24,7 @@
 #include "path/cell_bias.h"
 #include "path/gather_page.h"
 #include "path/light_cells.h"
+#include "path/mip_leaks.h"
 #include "path/path_integrator.h"
 #include "path/pooled_variance.h"
 #include "path/sealed_charts.h"
@@ -57,14 +59,15 @@ PathOptions path_options(const BakeOptions& options, const WorldGeometry& geomet
 constexpr std::uint32_t kSmallestPage = 256;
 
 // The largest page edge, of halves of `edge`, whose full page would fit; at least the smallest.
-std::uint32_t edge_that_fits(std::uint32_t edge, std::uint64_t memory, unsigned threads) {
-    while (edge > kSmallestPage && page_memory({edge, edge}, threads) > memory) edge /= 2;
+std::uint32_t edge_that_fits(std::uint32_t edge, std::uint32_t mips, std::uint64_t memory, unsigned threads) {
+    while (edge > kSmallestPage && page_memory({edge, edge}, mips, threads) > memory) edge /= 2;
     return std::max(edge, kSmallestPage);
 }
 
 // Packs the charts so that everything fits the memory allowed. Pages shrink by halves.
 Result<Atlas> make_atlas_within_memory(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts,
-                                       ChartOptions options, std::uint32_t cell_samples, std::uint64_t max_memory,
+                                       ChartOptions options, std::uint32_t cell_samples, bool collapses,
+                                       std::uint64_t max_memory,
                                        BakeReport& report, Context& context) {
     const bool one_page = charts.scene_wide || options.resolution_width != 0, is_kept = options.previous != nullptr;
     const Diagnostics before = context.diagnostics;
@@ -77,7 +80,8 @@ Result<Atlas> make_atlas_within_memory(const Scene& scene, const WorldGeometry& 
             return error;
         }
         LUMEL_TRY(Atlas atlas, std::move(made));
-        report.predicted_memory_bytes = bake_memory(scene, geometry, atlas, cell_samples, context.threads());
+        report.predicted_memory_bytes =
+            bake_memory(scene, geometry, atlas, cell_samples, collapses, context.threads());
         if (max_memory == 0 || report.predicted_memory_bytes <= max_memory) return atlas;
         if (one_page || is_kept || options.max_page <= kSmallestPage) break;
         std::uint64_t kept = scene_memory(scene, geometry, atlas);
@@ -87,7 +91,7 @@ Result<Atlas> make_atlas_within_memory(const Scene& scene, const WorldGeometry& 
             kept += cells.cells;
         }
         const std::uint64_t left = max_memory > kept ? max_memory - kept : 0;
-        options.max_page = edge_that_fits(options.max_page / 2, left, context.threads());
+        options.max_page = edge_that_fits(options.max_page / 2, options.masks.mips, left, context.threads());
     }
     std::string remedy = is_kept
                              ? "raise --max-memory, or leave out --atlas: pages of a layout that is kept stay as large"
@@ -147,22 +151,6 @@ struct Totals {
     }
 };
 
-PageReport page_report(const Lightmap& map, const TexelBuffer& buffer) {
-    PageReport page;
-    page.page = map.page;
-    page.width = map.width;
-    page.height = map.height;
-    page.texels = buffer.size();
-    for (const Coverage coverage : map.coverage) {
-        page.filled += coverage == Coverage::filled;
-        page.dilated += coverage == Coverage::dilated;
-    }
-    for (std::size_t i = 0; i < buffer.size(); ++i) page.invalid += map.coverage[i] != Coverage::baked;
-    page.coverage =
-        static_cast<double>(page.texels - page.invalid) / static_cast<double>(std::uint64_t{page.width} * page.height);
-    return page;
-}
-
 // What the pages are baked from, one at a time.
 struct PageBaker {
     const Scene& scene;
@@ -211,18 +199,21 @@ struct PageBaker {
         const std::vector<std::uint32_t> readers = chart_ids(scene, charts, atlas, page);
         LUMEL_TRY(Lightmap map,
                   finish_page(texels, std::move(sums), std::move(surface), readers, options.dilate, context));
+        if (atlas.masks.mips > 0) {
+            LUMEL_TRY(map.leaks, find_mip_leaks(texels, transport, atlas.masks.mips, context));
+        }
         if (smooth) LUMEL_TRY_STATUS(fit_to_lookup(texels, {}, map, context));
         if (seams) {
             const StageTimer seam_timer(report, "seams");
             LUMEL_TRY_STATUS(seams->blend(map, context));
         }
-        report.pages.push_back(page_report(map, texels));
+        report.pages.push_back(page_report(map, texels.size()));
         return map;
     }
 };
 
-// Progress of each stage is that over all pages.
-Status bake_pages(const PageBaker& baker, const BakeSink& sink, Totals& totals) {
+// Progress of each stage is that over all pages. `kept`: where pages go instead of being written.
+Status bake_pages(const PageBaker& baker, const PageOutput& output, Totals& totals, std::vector<Lightmap>* kept) {
     const auto work = [](const AtlasPage& page) {
         return static_cast<double>(std::uint64_t{page.width} * page.height);
     };
@@ -232,10 +223,12 @@ Status bake_pages(const PageBaker& baker, const BakeSink& sink, Totals& totals) 
     const auto by_page = triangles_by_page(baker.scene, baker.transport.geometry, baker.charts, baker.atlas);
     for (std::uint32_t page = 0; page < baker.atlas.pages.size(); ++page) {
         progress.begin(work(baker.atlas.pages[page]));
-        LUMEL_TRY(const Lightmap map, baker.bake(page, by_page[page]));
+        LUMEL_TRY(Lightmap map, baker.bake(page, by_page[page]));
         totals.add(map, baker.path.included);
-        const StageTimer timer(baker.report, "write");
-        if (sink.page) LUMEL_TRY_STATUS(sink.page(map));
+        if (kept)
+            kept->push_back(std::move(map));
+        else
+            LUMEL_TRY_STATUS(output.write(baker.atlas, map));
     }
     return success();
 }
@@ -245,7 +238,8 @@ Result<SeamBlender> make_seam_blender(const ChartSet& charts, const Atlas& atlas
                                       BakeReport& report, Context& context) {
     const StageTimer timer(report, "seams");
     const SeamRule rule;
-    const SeamOptions options;
+    SeamOptions options;
+    options.filter = atlas.masks.filter;
     const std::vector<BorderEdge> edges = find_border_edges(transport.scene, transport.geometry, charts, atlas);
     LUMEL_TRY(const std::vector<Seam> seams, find_seams(edges, rule, context));
     LUMEL_TRY(SeamSamples samples,
@@ -279,6 +273,12 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
 
     if (options.stop != StopRule::fixed && !(options.error > 0.0))
         return Error{ErrorCode::usage, "the error to stop at is not above zero", {}, "give --error, for example 0.05"};
+    if (options.collapse > 0.0 && (options.atlas || options.resolution_width != 0))
+        return Error{ErrorCode::usage,
+                     std::string("--collapse makes a layout of its own and does not go with ") +
+                         (options.atlas ? "--atlas" : "--resolution"),
+                     {},
+                     "leave one out"};
     LUMEL_TRY_STATUS(validate(scene));
     LUMEL_TRY(const WorldGeometry geometry, flatten(scene, context));
     report.input_hash = hash_scene(scene).hex();
@@ -317,7 +317,7 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
         const Diagnostics before = context.diagnostics;
         const auto lay_out = [&] {
             return make_atlas_within_memory(scene, geometry, charts, chart_options(options), cell_samples,
-                                            options.max_memory_bytes, report, context);
+                                            options.collapse > 0.0, options.max_memory_bytes, report, context);
         };
         Result<Atlas> laid_out = lay_out();
         if (!laid_out.ok() && laid_out.error().code == ErrorCode::out_of_memory && cell_samples > 0 &&
@@ -336,7 +336,11 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
                      "every node is of another class than lightmap (lumel info lists them), has no area, or falls into "
                      "charts far "
                      "smaller than a texel: ask for more --texels-per-metre"};
-    if (sink.layout) LUMEL_TRY_STATUS(sink.layout(geometry, charts, atlas));
+    const bool collapses = options.collapse > 0.0;
+    if (collapses && charts.scene_wide)
+        return Error{ErrorCode::usage, "--collapse moves charts, and TEXCOORD_1 is kept as one atlas of the scene",
+                     scene.source, "take --uv1 mesh or ignore, or leave --collapse out"};
+    if (sink.layout && !collapses) LUMEL_TRY_STATUS(sink.layout(geometry, charts, atlas));
 
     if (options.time_seconds > 0.0) {
         const StageTimer timer(report, "trial");
@@ -366,8 +370,13 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
     }
     const PageBaker baker{scene,  charts, atlas, transport, options, path, report, bias, seams ? &*seams : nullptr,
                           context};
-    LUMEL_TRY_STATUS(bake_pages(baker, sink, totals));
+    std::vector<Lightmap> kept;
+    const PageOutput output{scene, geometry, charts, options, sink, report, context};
+    LUMEL_TRY_STATUS(bake_pages(baker, output, totals, collapses ? &kept : nullptr));
     seams.reset();
+    if (collapses) LUMEL_TRY_STATUS(output.write_collapsed(kept, atlas));
+    kept.clear();
+    kept.shrink_to_fit();
     report.cell_bias = bias.relative();
     report.cell_bias_error = bias.standard_error();
     for (const PageReport& page : report.pages) {

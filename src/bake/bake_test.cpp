@@ -57,6 +57,76 @@ std::string bake_hash(unsigned threads, const BakeOptions& options, BakeReport* 
     return hasher.finish().hex();
 }
 
+// Every point of a surface finds, in the page and in each mip, light of its own chart in all texels that a lookup there
+// weighs: the declared filter by its definition, at points spread over every triangle.
+TEST(Bake, LookupsInMipsReadOneChart) {
+    constexpr std::uint32_t kMips = 3;
+    for (const LookupFilter filter : {LookupFilter::bilinear, LookupFilter::bicubic}) {
+        BakeOptions options = small_options();
+        options.samples = 1;
+        options.mips = kMips;
+        options.filter = filter;
+        const Scene scene = test::room();
+        ChartSet charts;
+        Atlas atlas;
+        std::vector<std::vector<Lightmap>> pages;  // page, mip
+        BakeSink sink;
+        sink.layout = [&](const WorldGeometry&, const ChartSet& c, const Atlas& a) {
+            charts = c;
+            atlas = a;
+            return success();
+        };
+        sink.page = [&](const Lightmap& map) {
+            if (map.mip == 0) pages.emplace_back();
+            EXPECT_EQ(map.mip, pages.back().size());
+            pages.back().push_back(map);
+            return success();
+        };
+        Context context(2);
+        ASSERT_TRUE(bake(scene, options, sink, context).ok());
+        EXPECT_EQ(atlas.masks, (MaskRule{filter, kMips, 1}));
+        const double reach = atlas.masks.reach() - 1e-3;  // of a texel: rounding of placed UVs
+        std::uint64_t looked = 0;
+        for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
+            const MeshCharts& mesh = charts.meshes[scene.instances[i].mesh];
+            for (std::uint32_t t = 0; t < mesh.chart_of_triangle.size(); ++t) {
+                const Atlas::TriangleUv uv = atlas.mesh_triangle_uv(charts, scene, i, t);
+                if (uv.page == kNone) continue;
+                ASSERT_EQ(pages[uv.page].size(), kMips + 1);
+                const std::uint32_t chart = atlas.first_placement[i] + mesh.chart_of_triangle[t];
+                for (std::uint32_t point = 0; point < 45; ++point) {
+                    const double a = point % 9 / 8.0, b = (1.0 - a) * (point / 9 / 4.0);
+                    const double u = uv.texels[0].x + a * (double{uv.texels[1].x} - uv.texels[0].x) +
+                                     b * (double{uv.texels[2].x} - uv.texels[0].x);
+                    const double v = uv.texels[0].y + a * (double{uv.texels[1].y} - uv.texels[0].y) +
+                                     b * (double{uv.texels[2].y} - uv.texels[0].y);
+                    for (const Lightmap& map : pages[uv.page]) {
+                        const double side = std::exp2(map.mip), x = u / side, y = v / side;
+                        for (double row = std::floor(y) - 2.0; row <= y + 2.0; ++row)
+                            for (double column = std::floor(x) - 2.0; column <= x + 2.0; ++column) {
+                                if (std::abs(column + 0.5 - x) >= reach || std::abs(row + 0.5 - y) >= reach) continue;
+                                const std::uint32_t texel =
+                                    texel_at_pixel(map.texel_at, map.width, map.height,
+                                                   static_cast<std::int32_t>(column), static_cast<std::int32_t>(row));
+                                ASSERT_NE(texel, kNone) << "mip " << map.mip << " of " << scene.instances[i].name;
+                                ASSERT_EQ(map.chart[texel], chart) << "mip " << map.mip;
+                                ++looked;
+                            }
+                    }
+                }
+            }
+        }
+        EXPECT_GT(looked, 1000u);
+    }
+}
+
+TEST(Bake, MipsHaveTheSameBitsForOneAndEightThreads) {
+    BakeOptions options = small_options();
+    options.samples = 4;
+    options.mips = 2;
+    EXPECT_EQ(bake_hash(1, options), bake_hash(8, options));
+}
+
 TEST(Bake, TheSameBitsForOneTwoAndEightThreads) {
     BakeReport report;
     const std::string one = bake_hash(1, small_options(), &report);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "chart/atlas_record.h"
+
 namespace lumel {
 namespace {
 
@@ -26,7 +28,13 @@ ChartOptions chart_options(const BakeOptions& options) {
     out.texels_per_metre = options.texels_per_metre;
     out.texel_budget = preset_values(options.preset).texel_budget;
     if (options.max_memory_bytes != 0) out.max_mask_bytes = std::min(out.max_mask_bytes, options.max_memory_bytes);
+    out.page_clusters = options.page_clusters;
+    out.pages = options.pages;
     out.previous = options.atlas.get();
+    if (out.previous) out.masks = out.previous->masks;
+    out.masks.filter = options.filter.value_or(out.masks.filter);
+    out.masks.mips = options.mips.value_or(out.masks.mips);
+    out.masks.block = options.block.value_or(out.masks.block);
     return out;
 }
 

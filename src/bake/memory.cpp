@@ -25,9 +25,9 @@ constexpr std::uint64_t kSumsBytes =
     kLayerCount * sizeof(LayerMoments) + 3 * sizeof(Vec3) + 2 * sizeof(float) + 2 * sizeof(std::uint32_t);
 // x, y, valid points, owner, position, normal, size; start and share of the triangle lists; its place in the blocks.
 constexpr std::uint64_t kTexelBufferBytes = 4 + 8 + 4 + 2 * sizeof(Vec3) + 4 + 4 + 12 + 8;
-// Albedo, emission, normal, coverage, chart; queue of the fill or guides of the denoiser or pooled variance or
+// Albedo, emission, normal, coverage, leaks, chart; queue of the fill or guides of the denoiser or pooled variance or
 // equations of the fit (nine shares and six numbers each), of which one lives at a time.
-constexpr std::uint64_t kLightmapBytes = 3 * sizeof(Vec3) + 1 + 4 + 15 * sizeof(float);
+constexpr std::uint64_t kLightmapBytes = 3 * sizeof(Vec3) + 2 + 4 + 15 * sizeof(float);
 // Of a thread: a block of texels with their points and sums, a wavefront of paths.
 constexpr std::uint64_t kWorkspaceBytes = 1u << 20;
 // Seams, of a texel of the page. Measured at 0.25 M texels, most of them rims: 0.06 to 0.09 samples for each texel
@@ -134,13 +134,14 @@ std::uint64_t scene_memory(const Scene& scene, const WorldGeometry& geometry, co
     return bytes;
 }
 
-std::uint64_t page_memory(const AtlasPage& page, unsigned threads) {
+std::uint64_t page_memory(const AtlasPage& page, std::uint32_t mips, unsigned threads) {
     const std::uint64_t texels = pixels_of(page);
+    const std::uint64_t mip = mips == 0 ? 0 : texels / 4 * (kSumsBytes + kLightmapBytes + kBytesPerPixel);
     const std::uint64_t rows =
         std::uint64_t{kExrRowsPerChunk} * threads * page.width * kMasterPixelBytes * kCopiesOfRows;
     // The texel buffer is gone when the files are written, and so is what each thread traces with.
     return texels * (kSumsBytes + kLightmapBytes + kSeamBytes + kBytesPerPixel) +
-           std::max(texels * kTexelBufferBytes + threads * kWorkspaceBytes, rows);
+           std::max(texels * kTexelBufferBytes + threads * kWorkspaceBytes, mip + rows);
 }
 
 CellMemory cell_memory(const WorldGeometry& geometry, const Atlas& atlas, std::uint32_t samples) {
@@ -162,12 +163,14 @@ CellMemory cell_memory(const WorldGeometry& geometry, const Atlas& atlas, std::u
 }
 
 std::uint64_t bake_memory(const Scene& scene, const WorldGeometry& geometry, const Atlas& atlas,
-                          std::uint32_t cell_samples, unsigned threads) {
-    std::uint64_t page = 0;
-    for (const AtlasPage& p : atlas.pages) page = std::max(page, page_memory(p, threads));
+                          std::uint32_t cell_samples, bool keeps_pages, unsigned threads) {
+    std::uint64_t page = 0, kept = 0;
+    for (const AtlasPage& p : atlas.pages) page = std::max(page, page_memory(p, atlas.masks.mips, threads));
     CellMemory cells;
     if (cell_samples > 0) cells = cell_memory(geometry, atlas, cell_samples);
-    return scene_memory(scene, geometry, atlas) + preview_memory(atlas) + picture_memory(atlas) + cells.cells +
+    if (keeps_pages)
+        for (const AtlasPage& p : atlas.pages) kept += pixels_of(p) * (kSumsBytes + kLightmapBytes + kBytesPerPixel);
+    return kept + scene_memory(scene, geometry, atlas) + preview_memory(atlas) + picture_memory(atlas) + cells.cells +
            std::max({page, cells.links, output_memory(scene, atlas)});
 }
 

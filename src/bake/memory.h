@@ -16,8 +16,9 @@ std::uint64_t light_memory(const WorldGeometry& geometry);
 // the result are rendered.
 std::uint64_t scene_memory(const Scene& scene, const WorldGeometry& geometry, const Atlas& atlas);
 
-// One page while it is baked and written: texel buffer, sums, lightmap, rows of the files on so many threads.
-std::uint64_t page_memory(const AtlasPage& page, unsigned threads);
+// One page while it is baked and written: texel buffer, sums, lightmap, rows of the files on so many threads; then its
+// mips, one at a time.
+std::uint64_t page_memory(const AtlasPage& page, std::uint32_t mips, unsigned threads);
 
 // Surface cells: what stays while pages are baked, and what comes on top while they are lit.
 struct CellMemory {
@@ -26,8 +27,9 @@ struct CellMemory {
 CellMemory cell_memory(const WorldGeometry& geometry, const Atlas& atlas, std::uint32_t samples);
 
 // All that `lumel bake` takes at its peak, which is the largest page, or the cells while they are lit, or the scene.glb
-// and the manifest at the end. `cell_samples`: samples per texel of a bake with cells, else 0.
+// and the manifest at the end. `cell_samples`: samples per texel of a bake with cells, else 0. `keeps_pages`: all are
+// kept until the last is baked (BakeOptions::collapse).
 std::uint64_t bake_memory(const Scene& scene, const WorldGeometry& geometry, const Atlas& atlas,
-                          std::uint32_t cell_samples, unsigned threads);
+                          std::uint32_t cell_samples, bool keeps_pages, unsigned threads);
 
 }  // namespace lumel

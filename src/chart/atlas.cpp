@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <limits>
 #include <span>
 #include <string>
 
@@ -14,6 +15,7 @@
 #include "chart/kept_layout.h"
 #include "chart/pack.h"
 #include "chart/pack_around.h"
+#include "chart/page_clusters.h"
 
 namespace lumel {
 namespace {
@@ -61,10 +63,37 @@ Status check_masks(const ChartOptions& options) {
                "ask for a --resolution of multiples of " + std::to_string(rule.cell()));
 }
 
+Status check_page_choice(const ChartOptions& options) {
+    if (options.pages == 0 && !options.page_clusters) return success();
+    if (options.resolution_width != 0)
+        return Error{ErrorCode::usage, "--pages does not go with --resolution, which is of one page", {}, "leave one out"};
+    if (options.previous)
+        return Error{ErrorCode::usage, "--pages does not go with --atlas, whose pages stay", {}, "leave one out"};
+    return success();
+}
+
+// The middle of the box around each instance.
+std::vector<Vec3> instance_centres(const Scene& scene, const WorldGeometry& geometry) {
+    std::vector<Vec3> out;
+    for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+        constexpr float kFar = std::numeric_limits<float>::max();
+        Vec3 low{kFar, kFar, kFar}, high{-kFar, -kFar, -kFar};
+        for (std::uint32_t t = geometry.first_triangle[i]; t < geometry.first_triangle[i + 1]; ++t)
+            for (const Vec3& p : geometry.corners(t)) {
+                low = min(low, p);
+                high = max(high, p);
+            }
+        out.push_back(0.5f * low + 0.5f * high);
+    }
+    return out;
+}
+
 class AtlasMaker {
 public:
-    AtlasMaker(const Scene& scene, const ChartSet& charts, const ChartOptions& options, Context& context)
+    AtlasMaker(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts, const ChartOptions& options,
+               Context& context)
         : scene_(scene),
+          geometry_(geometry),
           charts_(charts),
           options_(options),
           context_(context),
@@ -79,6 +108,7 @@ public:
         LUMEL_TRY_STATUS(options_.previous ? keep_previous(*options_.previous)
                          : fixed           ? fit_resolution()
                                            : fill_pages());
+        atlas.masks = options_.masks;
         atlas.kept = kept_;
         atlas.texels_per_metre = sized_.reached;
         atlas.least_texels_per_metre = sized_.least;
@@ -101,9 +131,13 @@ private:
                 std::max(options_.texel_budget, 2.0 * least_texels(instances_, BudgetOf::baked, options_.masks));
             LUMEL_TRY(density_, solve_density(charts_, instances_, budget, BudgetOf::baked, limit, context_));
         }
-        LUMEL_TRY_STATUS(draw(limit));
-        packing_ = pack(sized_.masks, items(), options_.max_page / cell(), context_);
-        if (!packing_.complete) return cancelled_error();
+        LUMEL_TRY_STATUS(draw(limit, options_.sizes));
+        const std::uint32_t max_page = options_.max_page / cell();
+        const bool clusters = options_.page_clusters || options_.pages != 0;
+        packing_ = clusters ? pack_clusters(sized_.masks, items(), places(), max_page, options_.pages, context_)
+                            : pack(sized_.masks, items(), max_page, context_);
+        if (context_.cancelled()) return cancelled_error();
+        if (!packing_.complete) return no_room();
         report_clamped();
         return success();
     }
@@ -195,10 +229,12 @@ private:
         const bool fixed = options_.resolution_width != 0;
         const std::string size = std::to_string(fixed ? options_.resolution_width : options_.max_page) + "x" +
                                  std::to_string(fixed ? options_.resolution_height : options_.max_page);
+        const std::string pages = options_.pages > 1 ? std::to_string(options_.pages) + " pages of " : "one page of ";
         return {ErrorCode::usage,
-                "the " + std::to_string(instances_.size()) + " charts do not fit one page of " + size + " texels",
+                "the " + std::to_string(instances_.size()) + " charts do not fit " + pages + size + " texels",
                 scene_.source,
                 options_.previous                 ? "leave out --atlas: there is no room beside the charts that stay"
+                : options_.pages > 0 ? "raise --pages or --max-page, or lower the density"
                 : options_.texels_per_metre > 0.0 ? "lower --texels-per-metre, or leave it out to have it solved"
                                                   : "ask for a larger --resolution, or none to have several pages"};
     }
@@ -230,6 +266,18 @@ private:
         return out;
     }
 
+    // Where each instance that has charts is, and how many cells they take.
+    [[nodiscard]] std::vector<PackPlace> places() const {
+        const std::vector<Vec3> centres = instance_centres(scene_, geometry_);
+        std::vector<PackPlace> out;
+        for (std::size_t k = 0; k < instances_.size(); ++k) {
+            const std::uint32_t i = instances_[k].instance;
+            if (k == 0 || instances_[k - 1].instance != i) out.push_back({i, centres[i], 0});
+            out.back().used += sized_.masks[sized_.mask_of[k]].used;
+        }
+        return out;
+    }
+
     void report_clamped() {
         char text[160];
         std::snprintf(text, sizeof text,
@@ -253,6 +301,7 @@ private:
     }
 
     const Scene& scene_;
+    const WorldGeometry& geometry_;
     const ChartSet& charts_;
     const ChartOptions& options_;
     Context& context_;
@@ -270,7 +319,8 @@ Result<Atlas> make_atlas(const Scene& scene, const WorldGeometry& geometry, cons
     if (options.previous) LUMEL_TRY_STATUS(check_record(*options.previous, charts, options));
     if (charts.scene_wide) return kept_atlas(scene, geometry, charts, options);
     LUMEL_TRY_STATUS(check_masks(options));
-    return AtlasMaker(scene, charts, options, context).run();
+    LUMEL_TRY_STATUS(check_page_choice(options));
+    return AtlasMaker(scene, geometry, charts, options, context).run();
 }
 
 Atlas::TriangleUv Atlas::triangle_uv(const ChartSet& charts, const WorldGeometry& geometry, const Scene& scene,

@@ -48,6 +48,12 @@ std::string density_text(double density) {
     return text;
 }
 
+// As it would be asked for.
+std::string rule_text(const MaskRule& rule) {
+    return std::string("--filter ") + (rule.filter == LookupFilter::bicubic ? "bicubic" : "bilinear") + " --mips " +
+           std::to_string(rule.mips) + " --block " + std::to_string(rule.block);
+}
+
 Status check_pages(const AtlasRecord& record, const ChartOptions& options) {
     const std::uint32_t cell = options.masks.cell();
     if (options.resolution_width != 0) {
@@ -123,6 +129,11 @@ std::vector<std::uint32_t> find_in_record(const AtlasRecord& record, const std::
 }
 
 Status check_record(const AtlasRecord& record, const ChartSet& charts, const ChartOptions& options) {
+    if (record.masks != options.masks)
+        return not_kept(record,
+                        "its charts are kept apart under " + rule_text(record.masks) + ", and " +
+                            rule_text(options.masks) + " is asked for",
+                        "leave out --filter, --mips and --block, or --atlas");
     if (record.scene_wide != charts.scene_wide)
         return not_kept(record,
                         charts.scene_wide ? "TEXCOORD_1 is one atlas of the scene now, and was not then"

@@ -28,6 +28,7 @@ struct AtlasRecord {
     };
     std::string where;  // the file, for messages
     bool scene_wide = false;
+    MaskRule masks;                // Atlas::masks
     double density = 0.0;          // Atlas::density: above 0 but for a kept layout
     std::vector<AtlasPage> pages;  // one of a scene-wide layout
     std::vector<Chart> charts;     // those that lie on a page

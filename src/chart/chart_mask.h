@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "chart/overlap.h"
+#include "lumel/options.h"
 #include "pack/mask.h"
 
 namespace lumel {
@@ -24,7 +25,7 @@ struct TexelMap {
 // What the runtime does with the lightmap. A cell is the smallest piece of a page that a chart has for itself: a texel
 // of the lowest mip, or a block. Masks are in cells, and charts lie on whole ones.
 struct MaskRule {
-    enum class Filter : std::uint8_t { bilinear, bicubic };  // 2 x 2 texels, 4 x 4
+    using Filter = LookupFilter;
     static constexpr std::uint32_t kMaxMips = 6;
 
     Filter filter = Filter::bilinear;

@@ -7,12 +7,13 @@ namespace lumel {
 
 namespace {
 
-// Calls span(placement, instance, triangle of its mesh, y, x0, x1) for what the triangles of the page reach, in the
-// order of placements.
+// Calls span(placement, instance, triangle of its mesh, y, x0, x1) for what the triangles of the page reach in one of
+// its mips, in the order of placements.
 template <class Span>
-void for_each_span(const Scene& scene, const ChartSet& charts, const Atlas& atlas, std::uint32_t page, double reach,
-                   const Span& span) {
-    const AtlasPage& size = atlas.pages[page];
+void for_each_span(const Scene& scene, const ChartSet& charts, const Atlas& atlas, std::uint32_t page,
+                   std::uint32_t mip, double reach, const Span& span) {
+    const AtlasPage size = atlas.pages[page].at_mip(mip);
+    const double scale = 1.0 / static_cast<double>(1u << mip);
     for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
         const std::uint32_t first = atlas.first_placement[i];
         if (first == atlas.first_placement[i + 1]) continue;
@@ -20,7 +21,8 @@ void for_each_span(const Scene& scene, const ChartSet& charts, const Atlas& atla
         for (std::uint32_t c = 0; c < mesh.charts.size(); ++c) {
             const ChartPlacement& place = atlas.placements[first + c];
             if (place.page != page) continue;
-            const TexelMap map{place.scale.x, place.scale.y, place.offset.x, place.offset.y};
+            const TexelMap map{place.scale.x * scale, place.scale.y * scale, place.offset.x * scale,
+                               place.offset.y * scale};
             for (std::uint32_t k = 0; k < mesh.charts[c].count; ++k) {
                 const std::uint32_t triangle = mesh.order[mesh.charts[c].first + k];
                 for_each_mask_span(
@@ -37,10 +39,10 @@ void for_each_span(const Scene& scene, const ChartSet& charts, const Atlas& atla
 }  // namespace
 
 std::vector<std::uint32_t> chart_ids(const Scene& scene, const ChartSet& charts, const Atlas& atlas,
-                                     std::uint32_t page) {
-    const AtlasPage& size = atlas.pages[page];
+                                     std::uint32_t page, std::uint32_t mip) {
+    const AtlasPage size = atlas.pages[page].at_mip(mip);
     std::vector<std::uint32_t> ids(std::size_t{size.width} * size.height, kNone);
-    for_each_span(scene, charts, atlas, page, kLookupReach,
+    for_each_span(scene, charts, atlas, page, mip, atlas.masks.reach(),
                   [&](std::uint32_t placement, std::uint32_t, std::uint32_t, std::uint32_t y, std::uint32_t x0,
                       std::uint32_t x1) {
                       for (std::uint32_t x = x0; x < x1; ++x) {
@@ -57,7 +59,7 @@ TexelOwners texel_owners(const Scene& scene, const WorldGeometry& geometry, cons
     const std::size_t texels = std::size_t{size.width} * size.height;
     TexelOwners out{std::vector<std::uint32_t>(texels, kNone), std::vector<std::uint8_t>(texels, 0)};
     const auto take = [&](double reach, std::uint8_t covered) {
-        for_each_span(scene, charts, atlas, page, reach,
+        for_each_span(scene, charts, atlas, page, 0, reach,
                       [&](std::uint32_t, std::uint32_t instance, std::uint32_t triangle, std::uint32_t y,
                           std::uint32_t x0, std::uint32_t x1) {
                           for (std::uint32_t x = x0; x < x1; ++x) {
@@ -69,7 +71,7 @@ TexelOwners texel_owners(const Scene& scene, const WorldGeometry& geometry, cons
                       });
     };
     take(kTexelReach, 1);
-    take(kLookupReach, 0);
+    take(atlas.masks.reach(), 0);
     return out;
 }
 

@@ -8,10 +8,10 @@
 
 namespace lumel {
 
-// Per texel of the page: index into Atlas::placements of the chart that a bilinear lookup may take it for, or kNone. In
-// a kept layout whose charts share texels the first in order of placements owns them.
-std::vector<std::uint32_t> chart_ids(const Scene& scene, const ChartSet& charts, const Atlas& atlas,
-                                     std::uint32_t page);
+// Per texel of a mip of the page: index into Atlas::placements of the chart that a lookup under Atlas::masks may take it
+// for, or kNone. In a kept layout whose charts share texels the first in order of placements owns them.
+std::vector<std::uint32_t> chart_ids(const Scene& scene, const ChartSet& charts, const Atlas& atlas, std::uint32_t page,
+                                     std::uint32_t mip = 0);
 
 // Which triangle of the world shows at a texel, be it where the texel's own square meets it or where only a lookup
 // takes the texel for it.

@@ -94,6 +94,14 @@ private:
     Result<bool> keep_scene_wide() {
         if (options_.uv1 == Uv1Policy::mesh || options_.uv1 == Uv1Policy::ignore || used_.meshes.empty()) return false;
         const bool asked = options_.uv1 == Uv1Policy::scene;
+        if (options_.masks != MaskRule{}) {
+            if (!asked)
+                return no_atlas("unchanged it would not keep charts apart under the --filter, --mips or --block asked");
+            return Error{ErrorCode::usage,
+                         "--uv1 scene keeps TEXCOORD_1 as it is, and cannot keep charts apart under --filter bicubic, "
+                         "--mips or --block",
+                         scene_.source, "use --uv1 mesh or ignore, or leave these options out"};
+        }
         for (const std::uint32_t m : used_.meshes) {
             const std::string reason = judge_uv1_coordinates(mesh(m), topology_[m].area);
             if (reason.empty()) continue;
@@ -236,8 +244,8 @@ private:
             kept);
         if (any_kept)
             report("uv1-repacked",
-                   "TEXCOORD_1 is no atlas of the whole scene; where it is fit the charts of a mesh were kept, and all "
-                   "were packed anew",
+                   "TEXCOORD_1 was not kept as one atlas of the scene; where it is fit the charts of a mesh were kept, "
+                   "and all were packed anew",
                    not_an_atlas_);
         return true;
     }

@@ -68,6 +68,9 @@ struct ChartPlacement {
 
 struct AtlasPage {
     std::uint32_t width = 0, height = 0;
+
+    // Of a mip that the rule of masks declares: pages are whole cells, so that nothing is rounded.
+    [[nodiscard]] AtlasPage at_mip(std::uint32_t mip) const { return {width >> mip, height >> mip}; }
 };
 
 struct Atlas {
@@ -79,6 +82,7 @@ struct Atlas {
     double texels_per_metre = 0.0, least_texels_per_metre = 0.0;
     // As asked or solved; 0 for a kept layout. What a later layout that keeps this one draws new charts at.
     double density = 0.0;
+    MaskRule masks;  // under which no two charts share texels; the usual one for a kept layout, which may not keep it
     std::uint64_t kept = 0;  // placements that are those of ChartOptions::previous
 
     // Lightmap UV of a triangle's corners in texels of the page, and that page; page kNone: no texels.
@@ -103,8 +107,15 @@ struct ChartOptions {
     std::uint32_t max_page = 4096;                              // largest page edge, texels, 64..16384
     double texels_per_metre = 0.0;                              // 0: solved from the budget
     double texel_budget = 250000.0;                             // texels, where no density is asked
+    // Charts of instances that are near each other share pages: as many as max_page asks for, or `pages` (0: not said).
+    bool page_clusters = false;
+    std::uint32_t pages = 0;
+    // Beside Atlas::placements: width and height, in texels, that a chart's box has instead of what the density gives
+    // it. 0 x 0, or an empty list: as the density says. Not with `previous`, nor with one page of a given resolution.
+    std::vector<std::array<std::uint32_t, 2>> sizes;
     std::uint64_t max_mask_bytes = std::uint64_t{2} << 30;      // of all masks together, while charts are packed
-    MaskRule masks;                                             // what the runtime's lookups touch; not of kept layouts
+    // What the runtime's lookups touch. A TEXCOORD_1 of the whole scene is kept only under the usual rule.
+    MaskRule masks;
     // Charts that are still the same keep their places (chart/atlas_record.h). None: all are packed anew.
     const AtlasRecord* previous = nullptr;
 };
@@ -119,7 +130,8 @@ struct UvOverlap {
 // Diagnostics: "uv1-rejected" (why a mesh's TEXCOORD_1 was not kept), "uv1-repacked" (why it was not kept as one atlas
 // of the scene), "uv-overlap" (pairs of triangles), "uv-bleeding" (pairs of charts of a kept atlas that share texels
 // under bilinear filtering), "unwrap-fallback", "bad-charts" (instances that got class volume: chart/bad_charts.h).
-// Errors: usage where Uv1Policy::scene was asked and some TEXCOORD_1 is missing or leaves [0, 1].
+// Errors: usage where Uv1Policy::scene was asked and some TEXCOORD_1 is missing or leaves [0, 1], or where the rule of
+// masks is not the usual one, which a layout that stays as it is could not follow.
 Result<ChartSet> make_charts(const Scene& scene, const WorldGeometry& geometry, const ChartOptions& options,
                              Context& context);
 

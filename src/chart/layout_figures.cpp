@@ -30,6 +30,17 @@ PageFigures page_figures(const TexelOwners& owners) {
     return out;
 }
 
+std::vector<MipFigures> mip_figures(const Scene& scene, const ChartSet& charts, const Atlas& atlas,
+                                    std::uint32_t page) {
+    std::vector<MipFigures> out;
+    for (std::uint32_t mip = 0; mip <= atlas.masks.mips; ++mip) {
+        const std::vector<std::uint32_t> ids = chart_ids(scene, charts, atlas, page, mip);
+        const auto free = static_cast<std::uint64_t>(std::ranges::count(ids, kNone));
+        out.push_back({ids.size() - free, ids.size()});
+    }
+    return out;
+}
+
 std::vector<double> triangle_densities(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts,
                                        const Atlas& atlas) {
     std::vector<double> out(geometry.triangle_count(), 0.0);

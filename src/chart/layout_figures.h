@@ -16,6 +16,16 @@ struct PageFigures {
 };
 PageFigures page_figures(const TexelOwners& owners);
 
+// Texels of each mip that Atlas::masks declares, the page itself first: those that lookups touch, over all of them.
+struct MipFigures {
+    std::uint64_t used = 0, texels = 0;
+
+    [[nodiscard]] double efficiency() const {
+        return texels > 0 ? static_cast<double>(used) / static_cast<double>(texels) : 0.0;
+    }
+};
+std::vector<MipFigures> mip_figures(const Scene& scene, const ChartSet& charts, const Atlas& atlas, std::uint32_t page);
+
 // Texels per metre at every triangle of the world: the root of its area on the page over that in the world. 0 where it
 // has no texels, or no area.
 std::vector<double> triangle_densities(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts,

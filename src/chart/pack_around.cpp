@@ -1,6 +1,8 @@
 #include "chart/pack_around.h"
 
 #include <algorithm>
+#include <optional>
+#include <utility>
 
 #include "base/check.h"
 #include "lumel/scene.h"
@@ -8,6 +10,24 @@
 
 namespace lumel {
 namespace {
+
+// A page with what lies on it, and what is to come: tried in several ways, of which one is taken.
+struct Growing {
+    PackPage page;
+    std::vector<FixedMask> fixed;
+    std::vector<std::uint32_t> waiting;  // items, ascending
+    std::vector<std::pair<std::uint32_t, PackSpot>> placed;
+
+    [[nodiscard]] std::uint64_t area() const { return std::uint64_t{page.width} * page.height; }
+};
+
+// Where a page may grow while some of what waits is placed.
+enum class Side : std::uint8_t { none, rows, columns };
+enum class Which : std::uint8_t { all, tall, wide };
+struct Step {
+    Side side;
+    Which which;
+};
 
 class Packer {
 public:
@@ -28,10 +48,13 @@ public:
     }
 
     Packing run(std::uint32_t max_page) && {
-        for (std::uint32_t p = 0; p < result_.pages.size(); ++p) fill(p, result_.pages[p].height);
+        for (std::uint32_t p = 0; p < result_.pages.size(); ++p) {
+            Growing state = state_of(p);
+            place({Side::none, Which::all}, p, 0, state);
+            take(p, std::move(state));
+        }
         if (max_page != 0) {
-            for (std::uint32_t p = 0; p < result_.pages.size(); ++p)
-                if (result_.pages[p].height < max_page) fill(p, max_page);  // else it was searched just now
+            for (std::uint32_t p = 0; p < result_.pages.size(); ++p) grow(p, max_page);
             add_pages(max_page);
         }
         while (!result_.pages.empty() && result_.pages.back().used == 0) result_.pages.pop_back();
@@ -40,37 +63,93 @@ public:
     }
 
 private:
-    // What waits and fits, up to this height.
-    void fill(std::uint32_t p, std::uint32_t height) {
-        PackPage& page = result_.pages[p];
-        if (waiting_.empty() || context_.cancelled()) return;
+    [[nodiscard]] Growing state_of(std::uint32_t p) const { return {result_.pages[p], fixed_[p], waiting_, {}}; }
+
+    void take(std::uint32_t p, Growing&& state) {
+        result_.pages[p] = state.page;
+        fixed_[p] = std::move(state.fixed);
+        waiting_ = std::move(state.waiting);
+        for (const auto& [item, spot] : state.placed) result_.spots[item] = spot;
+    }
+
+    // A chart that is far higher than wide costs few columns and many rows. So the page grows at either side or at
+    // both, whichever leaves the least waiting and then the smallest page.
+    void grow(std::uint32_t p, std::uint32_t max_page) {
+        static const std::vector<Step> kWays[] = {
+            {{Side::rows, Which::all}},
+            {{Side::columns, Which::all}},
+            {{Side::columns, Which::tall}, {Side::none, Which::all}, {Side::rows, Which::all}},
+            {{Side::rows, Which::wide}, {Side::none, Which::all}, {Side::columns, Which::all}},
+        };
+        if (waiting_.empty()) return;
+        std::optional<Growing> best;
+        for (const std::vector<Step>& way : kWays) {
+            Growing state = state_of(p);
+            for (const Step& step : way) place(step, p, max_page, state);
+            if (context_.cancelled()) return;
+            const bool better = !best || state.page.used > best->page.used ||
+                                (state.page.used == best->page.used && state.area() < best->area());
+            if (better) best = std::move(state);
+        }
+        take(p, std::move(*best));
+    }
+
+    [[nodiscard]] bool is_meant(const ChartMask& mask, Which which) const {
+        return which == Which::all || (mask.height > mask.width) == (which == Which::tall);
+    }
+
+    // What waits, is meant and fits. Columns are the rows of the page turned over.
+    void place(const Step& step, std::uint32_t p, std::uint32_t max_page, Growing& state) {
+        const bool turned = step.side == Side::columns;
+        PackPage& page = state.page;
+        const std::uint32_t across = turned ? page.height : page.width, along = turned ? page.width : page.height;
+        const std::uint32_t most = step.side == Side::none ? along : max_page;
+        if (state.waiting.empty() || context_.cancelled() || (step.side != Side::none && along >= max_page)) return;
         std::vector<std::uint32_t> tried, mask_of, left;
-        for (const std::uint32_t i : waiting_) {
+        for (const std::uint32_t i : state.waiting) {
             const ChartMask& mask = masks_[items_[i].mask];
-            const bool fits = mask.width <= page.width && mask.height <= height;
-            (fits ? tried : left).push_back(i);
-            if (fits) mask_of.push_back(items_[i].mask);
+            const bool fits = (turned ? mask.height : mask.width) <= across && (turned ? mask.width : mask.height) <= most;
+            const bool takes = fits && is_meant(mask, step.which);
+            (takes ? tried : left).push_back(i);
+            if (takes) mask_of.push_back(items_[i].mask);
         }
         if (tried.empty()) return;
+        std::vector<FixedMask> fixed = state.fixed;
+        if (turned) {
+            for (FixedMask& f : fixed) {
+                std::swap(f.x, f.y);
+                turn(f.mask);
+            }
+            for (const std::uint32_t m : mask_of) turn(m);
+        }
         FillOptions options;
-        options.width = page.width;
-        options.height = height;
+        options.width = across;
+        options.height = most;
         options.orientations = Orientations::one;
-        options.fixed = fixed_[p];
-        const PageFill filled = fill_page(masks_, mask_of, options, context_);
+        options.fixed = fixed;
+        const PageFill filled = fill_page(turned ? std::span<const ChartMask>(turned_) : masks_, mask_of, options, context_);
         for (std::size_t k = 0; k < tried.size(); ++k) {
             const PageSpot& spot = filled.spots[k];
             if (!spot.placed) {
                 left.push_back(tried[k]);
                 continue;
             }
-            result_.spots[tried[k]] = {p, spot.x, spot.y};
-            fixed_[p].push_back({mask_of[k], spot.x, spot.y});
-            page.height = std::max(page.height, std::min((spot.y + masks_[mask_of[k]].height + 3) / 4 * 4, height));
+            const PackSpot at = turned ? PackSpot{p, spot.y, spot.x} : PackSpot{p, spot.x, spot.y};
+            const ChartMask& mask = masks_[mask_of[k]];
+            state.placed.emplace_back(tried[k], at);
+            state.fixed.push_back({mask_of[k], at.x, at.y});
+            const std::uint32_t end = turned ? at.x + mask.width : at.y + mask.height;
+            std::uint32_t& edge = turned ? page.width : page.height;
+            edge = std::max(edge, std::min((end + 3) / 4 * 4, most));
         }
         page.used += filled.used;
         std::ranges::sort(left);
-        waiting_ = std::move(left);
+        state.waiting = std::move(left);
+    }
+
+    void turn(std::uint32_t mask) {
+        if (turned_.empty()) turned_.resize(masks_.size());
+        if (turned_[mask].bits.empty()) turned_[mask] = oriented(masks_[mask], kTranspose);
     }
 
     void add_pages(std::uint32_t max_page) {
@@ -91,6 +170,7 @@ private:
     Context& context_;
     std::vector<std::vector<FixedMask>> fixed_;  // per page
     std::vector<std::uint32_t> waiting_;         // items, ascending
+    std::vector<ChartMask> turned_;              // x and y swapped, those that were asked for
     Packing result_;
 };
 

@@ -53,6 +53,23 @@ Result<ChartArrays> chart_arrays(const Json& root, const std::string& where) {
     return out;
 }
 
+// Manifests of before lookups could be declared have none: the usual ones.
+Result<MaskRule> read_lookups(const Json& root, const std::string& where) {
+    LUMEL_TRY(const Json* lookups, optional_object(root, "lookups", where));
+    MaskRule out;
+    if (!lookups) return out;
+    const std::string here = where + ": lookups";
+    LUMEL_TRY(const std::string filter, string_or(*lookups, "filter", "bilinear", here));
+    LUMEL_TRY(const std::uint64_t mips, count_or(*lookups, "mips", 0, here));
+    LUMEL_TRY(const std::uint64_t block, count_or(*lookups, "block", 1, here));
+    if ((filter != "bilinear" && filter != "bicubic") || mips > MaskRule::kMaxMips || (block != 1 && block != 4))
+        return invalid(here, "are none that charts can be laid out for", kGiveAManifest);
+    out.filter = filter == "bicubic" ? LookupFilter::bicubic : LookupFilter::bilinear;
+    out.mips = static_cast<std::uint32_t>(mips);
+    out.block = static_cast<std::uint32_t>(block);
+    return out;
+}
+
 Result<std::uint64_t> parse_id(const Json& json, const std::string& where) {
     if (json.is_string()) {
         const std::string& text = json.get_ref<const std::string&>();
@@ -125,6 +142,7 @@ Result<AtlasRecord> parse_atlas_record(std::string_view text, const std::string&
     if (out.scene_wide && out.pages.size() != 1)
         return invalid(where, "is of one atlas of the scene, yet has " + std::to_string(out.pages.size()) + " pages",
                        kGiveAManifest);
+    LUMEL_TRY(out.masks, read_lookups(root, where));
     LUMEL_TRY(out.density, number_or(root, "density", 0.0, where));
     if (!(out.density >= 0.0 && out.density <= 1e9) || (out.density == 0.0 && !out.scene_wide))
         return invalid(where, "has no density that a layout could have been drawn at", kGiveAManifest);

@@ -58,6 +58,15 @@ TEST(AtlasRecordRead, TakesTheNamesOfASceneWideLayout) {
     EXPECT_EQ(record->charts[1].box, ChartBox{});
 }
 
+TEST(AtlasRecordRead, TakesTheLookupsItWasLaidOutFor) {
+    EXPECT_EQ(parse_atlas_record(good().dump(), "atlas.json")->masks, MaskRule{}) << "of before they were recorded";
+    Json json = good();
+    json["lookups"] = {{"filter", "bicubic"}, {"mips", 3}, {"block", 4}};
+    const Result<AtlasRecord> record = parse_atlas_record(json.dump(), "atlas.json");
+    ASSERT_TRUE(record.ok()) << record.error().text();
+    EXPECT_EQ(record->masks, (MaskRule{LookupFilter::bicubic, 3, 4}));
+}
+
 TEST(AtlasRecordRead, SaysWhatIsWrong) {
     const auto with = [](const char* pointer, const Json& value) {
         Json json = good();
@@ -70,6 +79,9 @@ TEST(AtlasRecordRead, SaysWhatIsWrong) {
     };
     says(with("/pages/0/width", 0), "page 0: is of a size that no layout has");
     says(with("/pages/0/height", 20000), "page 0: is of a size that no layout has");
+    says(with("/lookups", Json{{"mips", 7}}), "lookups: are none");
+    says(with("/lookups", Json{{"block", 2}}), "lookups: are none");
+    says(with("/lookups", Json{{"filter", "nearest"}}), "lookups: are none");
     says(with("/pages", Json::array()), "describes no pages");
     says(with("/density", 0), "has no density");
     says(with("/density", -1), "has no density");

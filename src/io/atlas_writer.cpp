@@ -9,7 +9,6 @@
 #include "base/cancelled.h"
 #include "base/parallel.h"
 #include "base/try.h"
-#include "chart/layout_figures.h"
 #include "encode/output_sizes.h"
 #include "image/colormap.h"
 #include "io/baked.h"
@@ -84,12 +83,20 @@ Status write_picture(const fs::path& path, std::size_t picture, const Drawing& d
 // JSON has no infinity.
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-Json page_json(std::uint32_t index, const AtlasPage& page, const PageFigures& figures) {
+Json mips_json(const std::vector<MipFigures>& mips) {
+    Json out = Json::array();
+    for (const MipFigures& mip : mips)
+        out.push_back({{"used", mip.used}, {"texels", mip.texels}, {"efficiency", mip.efficiency()}});
+    return out;
+}
+
+Json page_json(std::uint32_t index, const AtlasPage& page, const PageFigures& figures,
+               const std::vector<MipFigures>& mips) {
     Json files = Json::object();
     for (const char* what : kPictures) files[what] = picture_file(what, index);
     return {{"index", index},           {"width", page.width},        {"height", page.height},
             {"used", figures.used},     {"covered", figures.covered}, {"efficiency", figures.efficiency},
-            {"files", std::move(files)}};
+            {"mips", mips_json(mips)},  {"files", std::move(files)}};
 }
 
 Json statistics_json(const AtlasStatistics& s, const Atlas& atlas) {
@@ -99,6 +106,7 @@ Json statistics_json(const AtlasStatistics& s, const Atlas& atlas) {
             {"covered", s.covered},
             {"page_texels", s.page_texels},
             {"efficiency", s.efficiency},
+            {"mips", mips_json(s.mips)},
             {"mean_density", s.mean_density},
             {"texels_per_metre", atlas.texels_per_metre},
             {"least_texels_per_metre", atlas.least_texels_per_metre},
@@ -131,7 +139,13 @@ Result<AtlasStatistics> AtlasWriter::write(const Scene& scene, const WorldGeomet
         const AtlasPage& page = atlas.pages[p];
         const TexelOwners owners = texel_owners(scene, geometry, charts, atlas, p);
         const PageFigures figures = page_figures(owners);
-        pages.push_back(page_json(p, page, figures));
+        const std::vector<MipFigures> mips = mip_figures(scene, charts, atlas, p);
+        statistics.mips.resize(mips.size());
+        for (std::size_t k = 0; k < mips.size(); ++k) {
+            statistics.mips[k].used += mips[k].used;
+            statistics.mips[k].texels += mips[k].texels;
+        }
+        pages.push_back(page_json(p, page, figures, mips));
         statistics.used += figures.used;
         statistics.covered += figures.covered;
         statistics.page_texels += owners.triangle.size();
@@ -153,6 +167,7 @@ Result<AtlasStatistics> AtlasWriter::write(const Scene& scene, const WorldGeomet
                     {"geometry_hash", hash_geometry(geometry)},
                     {"density", atlas.density},
                     {"scene_wide_uvs", charts.scene_wide},
+                    {"lookups", lookups_json(atlas.masks)},
                     {"statistics", statistics_json(statistics, atlas)},
                     {"pages", std::move(pages)},
                     {"instances", instances_json(scene, charts, atlas)},

@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <vector>
 
 #include "chart/chart_set.h"
+#include "chart/layout_figures.h"
 #include "io/file_set.h"
 #include "io/gltf_document.h"
 #include "lumel/context.h"
@@ -20,7 +22,8 @@ struct AtlasStatistics {
     std::uint64_t charts = 0;             // placed
     std::uint64_t used = 0, covered = 0;  // texels that lookups touch; of these, those that a bake would trace
     std::uint64_t page_texels = 0;
-    double efficiency = 0.0;    // used over page_texels
+    double efficiency = 0.0;       // used over page_texels
+    std::vector<MipFigures> mips;  // of the declared ones, that of the pages themselves first
     double mean_density = 0.0;  // texels per metre: root of texels over square metres
     double stretch = 1.0;       // Sander's L2 of the charts
 };

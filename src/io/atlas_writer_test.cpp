@@ -33,8 +33,9 @@ const Names kOnePage{"atlas.json", "atlas_charts_0.png", "atlas_density_0.png", 
 
 // Two triangles, laid out.
 struct LaidOut {
-    explicit LaidOut(double texels_per_metre = 16) : loaded(scene()) {
+    explicit LaidOut(double texels_per_metre = 16, const MaskRule& masks = {}) : loaded(scene()) {
         ChartOptions options;
+        options.masks = masks;
         options.texels_per_metre = texels_per_metre;
         geometry = flatten(loaded.scene(), loaded.context).value();
         charts = make_charts(loaded.scene(), geometry, options, loaded.context).value();
@@ -117,6 +118,31 @@ TEST_F(AtlasFolder, IsReadBackAsALayoutToKeep) {
         EXPECT_EQ((*record)->charts[i].box, laid_out.atlas.placements[i].box);
     }
     EXPECT_NE(names[0].id, names[1].id) << "the nodes have names of their own";
+}
+
+// What a layout for mips wastes is said mip by mip, and the layout is known again as one for them.
+TEST_F(AtlasFolder, SaysWhatEachMipUses) {
+    const MaskRule rule{LookupFilter::bilinear, 2, 1};
+    LaidOut for_mips(16, rule);
+    const AtlasStatistics statistics = write_all(for_mips);
+    const Json json = json_file(out / "atlas.json");
+    const test::JsonSchema schema(json_file(std::string(LUMEL_SOURCE_DIR) + "/docs/schema/atlas.schema.json"));
+    for (const std::string& line : schema.errors(json)) ADD_FAILURE() << line;
+    EXPECT_EQ(json["lookups"], (Json{{"filter", "bilinear"}, {"mips", 2}, {"block", 1}}));
+    ASSERT_EQ(statistics.mips.size(), 3u);
+    EXPECT_EQ(json["statistics"]["mips"], json["pages"][0]["mips"]);
+    EXPECT_EQ(statistics.mips[0].used, statistics.used);
+    const AtlasPage page = for_mips.atlas.pages[0];
+    for (std::uint32_t mip = 0; mip < 3; ++mip) {
+        EXPECT_EQ(statistics.mips[mip].texels, std::uint64_t{page.width >> mip} * (page.height >> mip));
+        // Lookups in a lower mip touch no less of the page.
+        if (mip > 0) {
+            EXPECT_GT(statistics.mips[mip].efficiency(), statistics.mips[mip - 1].efficiency());
+        }
+    }
+    const auto record = read_atlas_record(out / "atlas.json");
+    ASSERT_TRUE(record.ok()) << record.error().text();
+    EXPECT_EQ((*record)->masks, rule);
 }
 
 TEST_F(AtlasFolder, AppearsAsAWholeAndReplacesAnOlderOne) {

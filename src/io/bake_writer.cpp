@@ -127,6 +127,17 @@ struct BakeWriter::Impl {
                          chart_picture(ids, atlas.pages[page], like));
     }
 
+    // Of the page that was written last.
+    Status write_mip(const Lightmap& lightmap) {
+        LUMEL_CHECK(lightmap.page + 1 == pages.size() && lightmap.mip == pages.back().mips.size() + 1, lightmap.page,
+                    lightmap.mip);
+        WriteProgress progress(context, kPageWork);
+        LUMEL_TRY(ManifestPage mip,
+                  write_page_files(output.path(), lightmap, layer_weights(options.include), progress));
+        pages.back().mips.push_back(std::move(mip));
+        return success();
+    }
+
     Status write_page(const Lightmap& lightmap) {
         LUMEL_CHECK(lightmap.page == pages.size(), lightmap.page, pages.size());
         const LayerWeights weights = layer_weights(options.include);
@@ -205,7 +216,9 @@ Status BakeWriter::layout(const WorldGeometry& geometry, const ChartSet& charts,
     return success();
 }
 
-Status BakeWriter::page(const Lightmap& lightmap) { return explain(impl_->write_page(lightmap)); }
+Status BakeWriter::page(const Lightmap& lightmap) {
+    return explain(lightmap.mip == 0 ? impl_->write_page(lightmap) : impl_->write_mip(lightmap));
+}
 
 Status BakeWriter::write_scene() { return explain(impl_->write_scene()); }
 

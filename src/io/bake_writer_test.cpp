@@ -21,6 +21,7 @@
 #include "io/image_io.h"
 #include "io/light_record.h"
 #include "io/manifest.h"
+#include "io/output_folder.h"
 #include "io/page_writer.h"
 #include "math/constants.h"
 #include "math/frame.h"
@@ -362,6 +363,34 @@ TEST(BakeWriter, WritesTheWholeFolder) {
     for (const auto& entry : std::filesystem::directory_iterator(folder / "out")) found.insert(entry.path().filename());
     EXPECT_EQ(found, expected);
     EXPECT_EQ(folder.entries(), 1u);
+}
+
+TEST(BakeWriter, MipsStandBesideTheirPage) {
+    const TemporaryFolder folder;
+    Baked baked(folder / "out");
+    const AtlasPage page = baked.atlas.pages[0];
+    for (std::uint32_t mip = 1; mip <= 2; ++mip) {
+        Lightmap map = made_up_page(0, page.width >> mip, page.height >> mip);
+        map.mip = mip;
+        ASSERT_TRUE(baked.writer->page(map).ok());
+    }
+    ASSERT_TRUE(baked.writer->write_scene().ok());
+    ASSERT_TRUE(baked.finish().ok());
+    const Json manifest = json_file(folder / "out/manifest.json");
+    EXPECT_EQ(joined(schema("manifest").errors(manifest)), "");
+    const Json& mips = manifest["pages"][0]["mips"];
+    ASSERT_EQ(mips.size(), 2u);
+    EXPECT_EQ(mips[1]["mip"], 2);
+    EXPECT_EQ(mips[1]["width"], page.width >> 2);
+    EXPECT_EQ(mips[1]["files"]["master"]["file"], "master_0_mip2.exr");
+    for (const Json& mip : mips)
+        for (const auto& [kind, file] : mip["files"].items()) {
+            const std::string name = file["file"];
+            EXPECT_TRUE(std::filesystem::exists(folder / "out" / name)) << kind;
+            EXPECT_TRUE(is_output_file(name)) << "goes when the folder is baked anew";
+        }
+    for (const char* other : {"master_0_mip.exr", "master_mip1.exr", "master_0_mip1.png", "master_a_mip1.exr"})
+        EXPECT_FALSE(is_output_file(other)) << other;
 }
 
 TEST(BakeWriter, ManifestAndReportFollowTheirSchemas) {

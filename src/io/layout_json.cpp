@@ -36,6 +36,12 @@ std::string text_of(const Json& json, int indent) {
 
 }  // namespace
 
+Json lookups_json(const MaskRule& masks) {
+    return {{"filter", masks.filter == LookupFilter::bicubic ? "bicubic" : "bilinear"},
+            {"mips", masks.mips},
+            {"block", masks.block}};
+}
+
 Json instances_json(const Scene& scene, const ChartSet& charts, const Atlas& atlas) {
     Json out = Json::array();
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {

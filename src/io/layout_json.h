@@ -11,6 +11,9 @@
 
 namespace lumel {
 
+// What lookups may touch without meeting two charts.
+Json lookups_json(const MaskRule& masks);
+
 Json instances_json(const Scene& scene, const ChartSet& charts, const Atlas& atlas);
 // One array per member: hundreds of thousands of charts stay readable by machines.
 Json charts_json(const Scene& scene, const ChartSet& charts, const Atlas& atlas);

@@ -40,22 +40,33 @@ FileMeaning meaning_of(PageFile kind) {
 // JSON has no infinity.
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-Json page_json(const ManifestPage& page, std::uint32_t index) {
+Json files_json(const ManifestPage& page, std::uint32_t index, std::uint32_t mip) {
     Json files = Json::object();
     for (const ManifestFile& file : page.files) {
         const FileMeaning meaning = meaning_of(file.kind);
-        files[meaning.name] = {{"file", page_file(file.kind, index)},
+        files[meaning.name] = {{"file", page_file(file.kind, index, mip)},
                                {"units", meaning.units},
                                {"encoding", meaning.encoding},
                                {"type", file.type}};
     }
+    return files;
+}
+
+Json page_json(const ManifestPage& page, std::uint32_t index) {
+    Json mips = Json::array();
+    for (std::uint32_t k = 0; k < page.mips.size(); ++k)
+        mips.push_back({{"mip", k + 1},
+                        {"width", page.mips[k].width},
+                        {"height", page.mips[k].height},
+                        {"files", files_json(page.mips[k], index, k + 1)}});
     return {{"index", index},
             {"file", page_file(PageFile::lightmap, index)},
             {"width", page.width},
             {"height", page.height},
             {"coverage", page.coverage},
             {"display_strength", json_number(page.display_strength)},
-            {"files", std::move(files)}};
+            {"mips", std::move(mips)},
+            {"files", files_json(page, index, 0)}};
 }
 
 Json pages_json(std::span<const ManifestPage> pages) {
@@ -101,6 +112,7 @@ Json manifest_json(const ManifestInput& in) {
     out["texels_per_metre"] = in.atlas.texels_per_metre;
     out["density"] = in.atlas.density;
     out["kept_charts"] = in.atlas.kept;
+    out["lookups"] = lookups_json(in.atlas.masks);
     out["scene_wide_uvs"] = in.charts.scene_wide;
     out["figures"] = {{"estimated_nrmse", number(in.report.estimated_nrmse)},
                       {"mean_irradiance", in.report.mean_irradiance}};
@@ -154,6 +166,9 @@ Json options_json(const ManifestInput& in) {
             {"resolution", {options.resolution_width, options.resolution_height}},
             {"max_page", options.max_page},
             {"texels_per_metre", options.texels_per_metre},
+            {"pages", options.pages != 0 ? Json(options.pages) : Json(options.page_clusters ? "cluster" : "auto")},
+            {"lookups", lookups_json(in.atlas.masks)},
+            {"collapse", options.collapse},
             {"uv1", kUv1[static_cast<std::size_t>(options.uv1)]},
             {"denoise", is_denoised(options)},
             {"dilate", options.dilate},
@@ -189,6 +204,7 @@ Json report_json(const ManifestInput& in, const Diagnostics& diagnostics) {
     out["invalid_texels"] = report.invalid_texels;
     out["texels_per_metre"] = report.texels_per_metre;
     out["least_texels_per_metre"] = report.least_texels_per_metre;
+    out["collapsed_charts"] = report.collapsed_charts;
     out["cells"] = report.cells;
     out["samples"] = report.samples;
     out["rays"] = report.rays;

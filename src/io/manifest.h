@@ -26,7 +26,8 @@ struct ManifestPage {
     std::uint32_t width = 0, height = 0;
     double coverage = 0.0;  // baked texels over all texels of the page
     std::vector<ManifestFile> files;
-    float display_strength = 1.0f;  // of the page's emissive texture in scene.glb
+    float display_strength = 1.0f;   // of the page's emissive texture in scene.glb
+    std::vector<ManifestPage> mips;  // from mip 1 on; these have neither mips nor display_strength of their own
 };
 
 struct ManifestInput {

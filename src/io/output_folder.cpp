@@ -44,10 +44,8 @@ bool is_output_file(const std::string& name) {
     if (is_encoded_file(name)) return true;
     if (name == kSceneFile || name == kManifestFile || name == kReportFile) return true;
     if (is_numbered(name, kViewStem, ".png")) return true;
-    return std::any_of(std::begin(kPageFiles), std::end(kPageFiles), [&](PageFile kind) {
-        const PageFileName pattern = page_file_name(kind);
-        return is_numbered(name, pattern.stem, pattern.extension);
-    });
+    return std::any_of(std::begin(kPageFiles), std::end(kPageFiles),
+                       [&](PageFile kind) { return is_page_file(kind, name); });
 }
 
 Result<OutputFolder> OutputFolder::create(const fs::path& target) {

@@ -68,10 +68,12 @@ constexpr LightUnit unit_of(PageFile kind) {
     return kind == PageFile::irradiance ? LightUnit::e : LightUnit::e_over_pi;
 }
 
-// "lightmap_0.exr"
-inline std::string page_file(PageFile kind, std::uint32_t page) {
+// "lightmap_0.exr"; of a mip of the page "lightmap_0_mip1.exr".
+inline constexpr const char* kMipMark = "_mip";
+inline std::string page_file(PageFile kind, std::uint32_t page, std::uint32_t mip = 0) {
     const PageFileName name = page_file_name(kind);
-    return name.stem + std::to_string(page) + name.extension;
+    const std::string of_mip = mip == 0 ? std::string() : kMipMark + std::to_string(mip);
+    return name.stem + std::to_string(page) + of_mip + name.extension;
 }
 
 // Is a name this stem, digits, this extension?
@@ -80,6 +82,16 @@ inline bool is_numbered(std::string_view name, std::string_view stem, std::strin
         return false;
     const std::string_view number = name.substr(stem.size(), name.size() - stem.size() - extension.size());
     return std::ranges::all_of(number, [](char c) { return c >= '0' && c <= '9'; });
+}
+
+// Is it page_file() of some page or mip?
+inline bool is_page_file(PageFile kind, std::string_view name) {
+    const PageFileName pattern = page_file_name(kind);
+    if (is_numbered(name, pattern.stem, pattern.extension)) return true;
+    const std::size_t mark = name.find(kMipMark, std::string_view(pattern.stem).size());
+    if (mark == std::string_view::npos) return false;
+    return is_numbered(name.substr(mark), kMipMark, pattern.extension) &&
+           is_numbered(name.substr(0, mark), pattern.stem, "");
 }
 
 // "encoded_l2": of what `lumel encode` writes, as .json and, for each page, _<page>.exr;

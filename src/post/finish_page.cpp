@@ -146,12 +146,23 @@ std::uint32_t owner_of(const Lightmap& map, Pixel p, std::uint32_t reader) {
     return owner;
 }
 
-// One ring of new texels around all that have a value. False: cancelled.
-bool dilate_once(Lightmap& map, std::span<const std::uint32_t> readers, Context& context) {
+// Room for all rings at once: growing ring by ring would hold the old and the new array each time.
+void reserve(Lightmap& map, std::size_t texels) {
+    map.texels.reserve(texels);
+    map.surface.albedo.reserve(texels);
+    map.surface.emission.reserve(texels);
+    map.normal.reserve(texels);
+    map.coverage.reserve(texels);
+    map.chart.reserve(texels);
+}
+
+}  // namespace
+
+Status dilate_once(Lightmap& map, std::span<const std::uint32_t> readers, Context& context) {
     std::vector<Pixel> ring;
     const std::size_t first = map.texels.size();
     for (std::uint32_t y = 0; y < map.height; ++y) {
-        if (context.cancelled()) return false;
+        if (context.cancelled()) return cancelled_error();
         for (std::uint32_t x = 0; x < map.width; ++x) {
             const std::size_t at = std::size_t{y} * map.width + x;
             if (map.texel_at[at] != kNone) continue;
@@ -167,7 +178,7 @@ bool dilate_once(Lightmap& map, std::span<const std::uint32_t> readers, Context&
     map.normal.resize(first + ring.size());
     map.coverage.resize(first + ring.size(), Coverage::none);
     for (std::size_t k = 0; k < ring.size(); ++k) {
-        if (k % kLookEvery == 0 && context.cancelled()) return false;
+        if (k % kLookEvery == 0 && context.cancelled()) return cancelled_error();
         const Average average = average_around(map, ring[k], map.chart[first + k]);
         average.store_light(map.texels, first + k);
         average.store_surface(map, first + k);
@@ -176,20 +187,8 @@ bool dilate_once(Lightmap& map, std::span<const std::uint32_t> readers, Context&
         map.coverage[first + k] = Coverage::dilated;
         map.texel_at[std::size_t{ring[k].y} * map.width + ring[k].x] = static_cast<std::uint32_t>(first + k);
     }
-    return true;
+    return success();
 }
-
-// Room for all rings at once: growing ring by ring would hold the old and the new array each time.
-void reserve(Lightmap& map, std::size_t texels) {
-    map.texels.reserve(texels);
-    map.surface.albedo.reserve(texels);
-    map.surface.emission.reserve(texels);
-    map.normal.reserve(texels);
-    map.coverage.reserve(texels);
-    map.chart.reserve(texels);
-}
-
-}  // namespace
 
 // Square rings: first each row grows sideways, then a window of rows slides down the page.
 std::size_t texels_with_rings(const TexelBuffer& buffer, std::uint32_t rings) {
@@ -235,7 +234,7 @@ Result<Lightmap> finish_page(const TexelBuffer& buffer, RadianceSums sums, Texel
     LUMEL_TRY_STATUS(Filler(map, buffer).run(context));
     reserve(map, texels_with_rings(buffer, rings));
     for (std::uint32_t ring = 0; ring < rings; ++ring)
-        if (!dilate_once(map, readers, context)) return cancelled_error();
+        LUMEL_TRY_STATUS(dilate_once(map, readers, context));
     return map;
 }
 

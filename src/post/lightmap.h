@@ -17,17 +17,23 @@ namespace lumel {
 enum class Coverage : std::uint8_t { none = 0, dilated = 1, filled = 2, baked = 3 };
 
 struct Lightmap {
-    std::uint32_t page = 0, width = 0, height = 0;
+    std::uint32_t page = 0, mip = 0, width = 0, height = 0;
     std::vector<std::uint32_t> texel_at;  // width*height: index into the arrays of `texels`, or kNone
     RadianceSums texels;                  // baked texels first (in TexelBuffer order), then dilated ones
     TexelSurface surface;                 // per texel
     std::vector<Vec3> normal;             // per texel: the vertex normal, about which its irradiance is
     std::vector<Coverage> coverage;       // per texel
     std::vector<std::uint32_t> chart;     // per texel: whose light it is, as in TexelBuffer
+    // Per texel that was rasterised: 1 where mips should not average it (path/mip_leaks.h). Empty: average all.
+    std::vector<std::uint8_t> leaks;
 };
 
 // At most how many texels the page has once `rings` rings surround its charts: for reserving before they are traced.
 std::size_t texels_with_rings(const TexelBuffer& buffer, std::uint32_t rings);
+
+// One ring of new texels around all that have a value, in the order of pixels; whose light they take: finish_page().
+// Error: cancelled.
+Status dilate_once(Lightmap& map, std::span<const std::uint32_t> readers, Context& context);
 
 // Fills invalid texels from the 3x3 neighbours of their own chart that have a value (repeated until nothing changes),
 // then dilates `rings` rings around the charts. Both by coverage. A dilated texel takes the light of one chart alone:

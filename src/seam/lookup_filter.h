@@ -6,14 +6,10 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "lumel/options.h"
 #include "lumel/vec.h"
 
 namespace lumel {
-
-enum class LookupFilter : std::uint8_t {
-    bilinear,
-    bicubic,  // the uniform cubic B-spline, as shaders do it in four bilinear lookups
-};
 
 // The shares of up to 4 x 4 texels; those of bilinear lookups are the first 2 x 2. They sum to 1.
 struct Lookup {

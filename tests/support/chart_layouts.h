@@ -66,6 +66,7 @@ inline AtlasRecord record_of(const Level& level, const Layout& l) {
     AtlasRecord out;
     out.where = "previous.json";
     out.scene_wide = l.charts.scene_wide;
+    out.masks = l.atlas.masks;
     out.density = l.atlas.density;
     out.pages = l.atlas.pages;
     const std::vector<ChartName> names = chart_names(level.scene, l.charts);
