@@ -53,9 +53,17 @@ public:
             place({Side::none, Which::all}, p, 0, state);
             take(p, std::move(state));
         }
-        if (max_page != 0) {
-            for (std::uint32_t p = 0; p < result_.pages.size(); ++p) grow(p, max_page);
-            add_pages(max_page);
+        if (max_page != 0 && !waiting_.empty()) {
+            const std::optional<Growth> one = least_growth(max_page);
+            const Packing more = one && is_little(one->added) ? Packing{} : new_pages(max_page);
+            if (one && (!more.complete || one->added <= area_of(more.pages))) {
+                take(one->page, Growing(one->state));
+            } else if (one) {
+                add_pages(more);
+            } else {
+                for (std::uint32_t p = 0; p < result_.pages.size(); ++p) take(p, grown(p, max_page));
+                add_pages(new_pages(max_page));
+            }
         }
         while (!result_.pages.empty() && result_.pages.back().used == 0) result_.pages.pop_back();
         result_.complete = waiting_.empty() && !context_.cancelled();
@@ -72,26 +80,55 @@ private:
         for (const auto& [item, spot] : state.placed) result_.spots[item] = spot;
     }
 
+    // A page that grows until it holds all that waits.
+    struct Growth {
+        std::uint32_t page = 0;
+        std::uint64_t added = 0;  // texels
+        Growing state;
+    };
+
+    // The page that grows by the least; none where no page holds all.
+    std::optional<Growth> least_growth(std::uint32_t max_page) {
+        std::optional<Growth> best;
+        for (std::uint32_t p = 0; p < result_.pages.size() && !context_.cancelled(); ++p) {
+            Growing state = grown(p, max_page);
+            const std::uint64_t added = state.area() - state_of(p).area();
+            if (state.waiting.empty() && (!best || added < best->added)) best = Growth{p, added, std::move(state)};
+        }
+        return best;
+    }
+
+    // One more page is one more texture. It is worth that where a chart that is high and wide would have rows or
+    // columns of a whole page for itself.
+    [[nodiscard]] bool is_little(std::uint64_t added) const {
+        constexpr double kLittle = 0.02;
+        return static_cast<double>(added) <= kLittle * static_cast<double>(area_of(result_.pages));
+    }
+
+    static std::uint64_t area_of(const std::vector<PackPage>& pages) {
+        std::uint64_t area = 0;
+        for (const PackPage& page : pages) area += std::uint64_t{page.width} * page.height;
+        return area;
+    }
+
     // A chart that is far higher than wide costs few columns and many rows. So the page grows at either side or at
     // both, whichever leaves the least waiting and then the smallest page.
-    void grow(std::uint32_t p, std::uint32_t max_page) {
+    Growing grown(std::uint32_t p, std::uint32_t max_page) {
         static const std::vector<Step> kWays[] = {
             {{Side::rows, Which::all}},
             {{Side::columns, Which::all}},
             {{Side::columns, Which::tall}, {Side::none, Which::all}, {Side::rows, Which::all}},
             {{Side::rows, Which::wide}, {Side::none, Which::all}, {Side::columns, Which::all}},
         };
-        if (waiting_.empty()) return;
         std::optional<Growing> best;
         for (const std::vector<Step>& way : kWays) {
             Growing state = state_of(p);
             for (const Step& step : way) place(step, p, max_page, state);
-            if (context_.cancelled()) return;
             const bool better = !best || state.page.used > best->page.used ||
                                 (state.page.used == best->page.used && state.area() < best->area());
             if (better) best = std::move(state);
         }
-        take(p, std::move(*best));
+        return std::move(*best);
     }
 
     [[nodiscard]] bool is_meant(const ChartMask& mask, Which which) const {
@@ -152,14 +189,17 @@ private:
         if (turned_[mask].bits.empty()) turned_[mask] = oriented(masks_[mask], kTranspose);
     }
 
-    void add_pages(std::uint32_t max_page) {
-        if (waiting_.empty() || context_.cancelled()) return;
+    // What waits, on pages of its own.
+    [[nodiscard]] Packing new_pages(std::uint32_t max_page) const {
         std::vector<PackItem> items;
         for (const std::uint32_t i : waiting_) items.push_back(items_[i]);
-        const Packing more = pack(masks_, items, max_page, context_);
-        if (!more.complete) return;
+        return pack(masks_, items, max_page, context_);
+    }
+
+    void add_pages(const Packing& more) {
+        if (waiting_.empty() || !more.complete) return;
         const auto first = static_cast<std::uint32_t>(result_.pages.size());
-        for (std::size_t k = 0; k < items.size(); ++k)
+        for (std::size_t k = 0; k < waiting_.size(); ++k)
             result_.spots[waiting_[k]] = {first + more.spots[k].page, more.spots[k].x, more.spots[k].y};
         result_.pages.insert(result_.pages.end(), more.pages.begin(), more.pages.end());
         waiting_.clear();
