@@ -57,8 +57,7 @@ public:
     Status read(BakeOptions& options) const;
 
 private:
-    std::string preset_ = "medium", resolution_, uv1_ = "automatic", atlas_, filter_ = "bilinear",
-                pages_ = "auto";
+    std::string preset_ = "medium", resolution_, uv1_ = "automatic", atlas_, filter_ = "bilinear", pages_ = "auto";
     std::uint32_t mips_ = 0, block_ = 1;
     const CLI::Option *filter_option_ = nullptr, *mips_option_ = nullptr, *block_option_ = nullptr;
     BakeOptions values_;

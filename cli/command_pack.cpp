@@ -144,10 +144,10 @@ Result<std::string> run_groups(const std::vector<ChartMask>& masks, const Option
     figures.efficiency = area > 0.0 ? static_cast<double>(figures.used) / area : 0.0;
     if (options.json) return to_json(packing, figures);
     char text[200];
-    std::snprintf(text, sizeof text, "%zu charts, %llu texels: %zu page(s) of %.0f texels on average, %.2f %% used, %.2f CPU s\n",
-                  masks.size(), static_cast<unsigned long long>(figures.used), pages,
-                  area / static_cast<double>(std::max<std::size_t>(1, pages)), 100.0 * figures.efficiency,
-                  figures.cpu_seconds);
+    std::snprintf(
+        text, sizeof text, "%zu charts, %llu texels: %zu page(s) of %.0f texels on average, %.2f %% used, %.2f CPU s\n",
+        masks.size(), static_cast<unsigned long long>(figures.used), pages,
+        area / static_cast<double>(std::max<std::size_t>(1, pages)), 100.0 * figures.efficiency, figures.cpu_seconds);
     return std::string(text);
 }
 

@@ -26,8 +26,7 @@ void TexelOptions::declare(CLI::App& app) {
     app.add_option("--max-page", values_.max_page, "Largest page edge in texels")
         ->check(CLI::Range(64u, 16384u))
         ->group(group);
-    app.add_option("--pages", pages_,
-                   "auto (few), cluster (each holds what is near by) or how many of such, 1 to 1024")
+    app.add_option("--pages", pages_, "auto (few), cluster (each holds what is near by) or how many of such, 1 to 1024")
         ->group(group);
     app.add_option("--uv1", uv1_,
                    "TEXCOORD_1: automatic, scene (keep as one atlas), mesh (keep charts, repack), ignore")
@@ -69,8 +68,7 @@ Status TexelOptions::read(BakeOptions& out) const {
               : uv1_ == "mesh"   ? Uv1Choice::mesh
               : uv1_ == "ignore" ? Uv1Choice::ignore
                                  : Uv1Choice::automatic;
-    if (filter_option_->count() > 0)
-        out.filter = filter_ == "bicubic" ? LookupFilter::bicubic : LookupFilter::bilinear;
+    if (filter_option_->count() > 0) out.filter = filter_ == "bicubic" ? LookupFilter::bicubic : LookupFilter::bilinear;
     if (mips_option_->count() > 0) out.mips = mips_;
     if (block_option_->count() > 0) out.block = block_;
     if (!atlas_.empty()) {

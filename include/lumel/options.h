@@ -93,9 +93,9 @@ struct BakeOptions {
     std::optional<LookupFilter> filter;
     std::optional<std::uint32_t> mips;   // lookups in mips 0..this one, 0..6; mips from 1 on are written, too
     std::optional<std::uint32_t> block;  // 4: no block of 4 x 4 texels holds two charts, for BC formats; 1: it may
-    std::optional<bool> denoise;  // post/denoise.h; without a value: the preset's
-    std::uint32_t dilate = 2;     // rings of texels filled around charts, 0..64
-    bool seams = false;           // both sides of a seam show the same light (docs/stages/seams.md)
+    std::optional<bool> denoise;         // post/denoise.h; without a value: the preset's
+    std::uint32_t dilate = 2;            // rings of texels filled around charts, 0..64
+    bool seams = false;                  // both sides of a seam show the same light (docs/stages/seams.md)
     // Light
     SkyOptions sky;
     SunOptions sun;

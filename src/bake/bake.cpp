@@ -67,8 +67,7 @@ std::uint32_t edge_that_fits(std::uint32_t edge, std::uint32_t mips, std::uint64
 // Packs the charts so that everything fits the memory allowed. Pages shrink by halves.
 Result<Atlas> make_atlas_within_memory(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts,
                                        ChartOptions options, std::uint32_t cell_samples, bool collapses,
-                                       std::uint64_t max_memory,
-                                       BakeReport& report, Context& context) {
+                                       std::uint64_t max_memory, BakeReport& report, Context& context) {
     const bool one_page = charts.scene_wide || options.resolution_width != 0, is_kept = options.previous != nullptr;
     const Diagnostics before = context.diagnostics;
     for (;;) {
@@ -80,8 +79,7 @@ Result<Atlas> make_atlas_within_memory(const Scene& scene, const WorldGeometry& 
             return error;
         }
         LUMEL_TRY(Atlas atlas, std::move(made));
-        report.predicted_memory_bytes =
-            bake_memory(scene, geometry, atlas, cell_samples, collapses, context.threads());
+        report.predicted_memory_bytes = bake_memory(scene, geometry, atlas, cell_samples, collapses, context.threads());
         if (max_memory == 0 || report.predicted_memory_bytes <= max_memory) return atlas;
         if (one_page || is_kept || options.max_page <= kSmallestPage) break;
         std::uint64_t kept = scene_memory(scene, geometry, atlas);

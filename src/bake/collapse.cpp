@@ -23,7 +23,9 @@ Vec3 irradiance(const Lightmap& page, std::size_t texel, const LayerWeights& lay
 }
 
 std::array<Vec3, kShCoefficients> coefficients(const Lightmap& page, std::size_t texel, const LayerWeights& layers) {
-    return sum_sh_layers(layers, [&](std::size_t l) -> const auto& { return page.texels.layers[texel][l].sh; }).c;
+    return sum_sh_layers(
+               layers, [&](std::size_t l) -> const auto& { return page.texels.layers[texel][l].sh; })
+        .c;
 }
 
 // Texels of each placement that have light of their own.
@@ -90,7 +92,8 @@ public:
             const double allowed_shown = rule_.share * (shown.mean + floor);
             if (shown.variance() - explained * albedo.mean * albedo.mean > allowed_shown * allowed_shown) return false;
             for (const std::uint32_t i : texels_) {
-                const double sigma = rule_.has_noise ? std::sqrt(static_cast<double>(page_.texels.variance[i][c])) : 0.0;
+                const double sigma =
+                    rule_.has_noise ? std::sqrt(static_cast<double>(page_.texels.variance[i][c])) : 0.0;
                 const double off = std::abs(static_cast<double>(irradiance(page_, i, rule_.layers)[c]) - light.mean);
                 if (off > kMost * (allowed + sigma)) return false;
             }

@@ -1,7 +1,7 @@
 // After a bake: charts whose light hardly varies become as small as can be, and all are packed anew. The others keep
 // their texels to the bit; they move by whole texels.
-// Based on: O'Donnell, "Precomputed Global Illumination in Frostbite" (2018), which credits Mitton: charts of one colour
-// need no more than the smallest size.
+// Based on: O'Donnell, "Precomputed Global Illumination in Frostbite" (2018), which credits Mitton: charts of one
+// colour need no more than the smallest size.
 #pragma once
 
 #include <cstdint>

@@ -87,7 +87,8 @@ TEST(EvenCharts, LightOfOneSideIsNotThatOfAnother) {
 
 TEST(EvenCharts, TexturesCountWhereTheyAreLit) {
     const auto paint = [](OneChart chart) {
-        for (std::size_t i = 0; i < chart.page.chart.size(); i += 2) chart.page.surface.albedo[i] = Vec3{0.2f, 0.2f, 0.2f};
+        for (std::size_t i = 0; i < chart.page.chart.size(); i += 2)
+            chart.page.surface.albedo[i] = Vec3{0.2f, 0.2f, 0.2f};
         return chart;
     };
     EXPECT_FALSE(paint(OneChart(one)).is_even(0.01));

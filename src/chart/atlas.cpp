@@ -66,7 +66,8 @@ Status check_masks(const ChartOptions& options) {
 Status check_page_choice(const ChartOptions& options) {
     if (options.pages == 0 && !options.page_clusters) return success();
     if (options.resolution_width != 0)
-        return Error{ErrorCode::usage, "--pages does not go with --resolution, which is of one page", {}, "leave one out"};
+        return Error{
+            ErrorCode::usage, "--pages does not go with --resolution, which is of one page", {}, "leave one out"};
     if (options.previous)
         return Error{ErrorCode::usage, "--pages does not go with --atlas, whose pages stay", {}, "leave one out"};
     return success();
@@ -234,7 +235,7 @@ private:
                 "the " + std::to_string(instances_.size()) + " charts do not fit " + pages + size + " texels",
                 scene_.source,
                 options_.previous                 ? "leave out --atlas: there is no room beside the charts that stay"
-                : options_.pages > 0 ? "raise --pages or --max-page, or lower the density"
+                : options_.pages > 0              ? "raise --pages or --max-page, or lower the density"
                 : options_.texels_per_metre > 0.0 ? "lower --texels-per-metre, or leave it out to have it solved"
                                                   : "ask for a larger --resolution, or none to have several pages"};
     }

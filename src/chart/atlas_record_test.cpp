@@ -274,8 +274,7 @@ TEST_P(StickyScenes, OneObjectGoesAndOneComes) {
         EXPECT_GT(kept.same, 0u);
         const double growth = texels(now.atlas) / texels(then.atlas) - 1.0;
         const double more = texels_of(now.atlas) / texels_of(then.atlas) - 1.0;
-        EXPECT_LE(growth, std::max(more, 0.0) + 0.02)
-            << before.scene.instances[copied].name;
+        EXPECT_LE(growth, std::max(more, 0.0) + 0.02) << before.scene.instances[copied].name;
         RecordProperty("growth_percent_" + std::to_string(turn), std::to_string(100.0 * growth));
         RecordProperty("stayed_" + std::to_string(turn), std::to_string(kept.same));
         if (turn == 0) expect_clean(judge(after, now));

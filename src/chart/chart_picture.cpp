@@ -38,8 +38,8 @@ void for_each_span(const Scene& scene, const ChartSet& charts, const Atlas& atla
 
 }  // namespace
 
-std::vector<std::uint32_t> chart_ids(const Scene& scene, const ChartSet& charts, const Atlas& atlas,
-                                     std::uint32_t page, std::uint32_t mip) {
+std::vector<std::uint32_t> chart_ids(const Scene& scene, const ChartSet& charts, const Atlas& atlas, std::uint32_t page,
+                                     std::uint32_t mip) {
     const AtlasPage size = atlas.pages[page].at_mip(mip);
     std::vector<std::uint32_t> ids(std::size_t{size.width} * size.height, kNone);
     for_each_span(scene, charts, atlas, page, mip, atlas.masks.reach(),

@@ -8,8 +8,8 @@
 
 namespace lumel {
 
-// Per texel of a mip of the page: index into Atlas::placements of the chart that a lookup under Atlas::masks may take it
-// for, or kNone. In a kept layout whose charts share texels the first in order of placements owns them.
+// Per texel of a mip of the page: index into Atlas::placements of the chart that a lookup under Atlas::masks may take
+// it for, or kNone. In a kept layout whose charts share texels the first in order of placements owns them.
 std::vector<std::uint32_t> chart_ids(const Scene& scene, const ChartSet& charts, const Atlas& atlas, std::uint32_t page,
                                      std::uint32_t mip = 0);
 

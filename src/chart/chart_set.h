@@ -113,7 +113,7 @@ struct ChartOptions {
     // Beside Atlas::placements: width and height, in texels, that a chart's box has instead of what the density gives
     // it. 0 x 0, or an empty list: as the density says. Not with `previous`, nor with one page of a given resolution.
     std::vector<std::array<std::uint32_t, 2>> sizes;
-    std::uint64_t max_mask_bytes = std::uint64_t{2} << 30;      // of all masks together, while charts are packed
+    std::uint64_t max_mask_bytes = std::uint64_t{2} << 30;  // of all masks together, while charts are packed
     // What the runtime's lookups touch. A TEXCOORD_1 of the whole scene is kept only under the usual rule.
     MaskRule masks;
     // Charts that are still the same keep their places (chart/atlas_record.h). None: all are packed anew.

@@ -145,7 +145,8 @@ private:
         std::vector<std::uint32_t> tried, mask_of, left;
         for (const std::uint32_t i : state.waiting) {
             const ChartMask& mask = masks_[items_[i].mask];
-            const bool fits = (turned ? mask.height : mask.width) <= across && (turned ? mask.width : mask.height) <= most;
+            const bool fits =
+                (turned ? mask.height : mask.width) <= across && (turned ? mask.width : mask.height) <= most;
             const bool takes = fits && is_meant(mask, step.which);
             (takes ? tried : left).push_back(i);
             if (takes) mask_of.push_back(items_[i].mask);
@@ -164,7 +165,8 @@ private:
         options.height = most;
         options.orientations = Orientations::one;
         options.fixed = fixed;
-        const PageFill filled = fill_page(turned ? std::span<const ChartMask>(turned_) : masks_, mask_of, options, context_);
+        const PageFill filled =
+            fill_page(turned ? std::span<const ChartMask>(turned_) : masks_, mask_of, options, context_);
         for (std::size_t k = 0; k < tried.size(); ++k) {
             const PageSpot& spot = filled.spots[k];
             if (!spot.placed) {

@@ -75,7 +75,8 @@ TEST(PackAround, ChartsStayAndHolesAreFilled) {
 TEST(PackAround, PagesGrowThenNewOnesAreAdded) {
     const Set set = random_set(400, 2);
     Context context(1);
-    // One chart keeps a page of 64 x 64; the others need about four of these, and no page is larger than one and a half.
+    // One chart keeps a page of 64 x 64; the others need about four of these, and no page is larger than one and a
+    // half.
     std::vector<PackSpot> kept(set.items.size(), kWaiting);
     kept[7] = {0, 10, 20};
     const std::vector<PackPage> pages{{64, 64, 0}};

@@ -75,7 +75,7 @@ std::vector<Part> cluster_places(std::span<const PackPlace> places, std::uint32_
 Packing pack_clusters(std::span<const ChartMask> masks, std::span<const PackItem> items,
                       std::span<const PackPlace> places, std::uint32_t max_page, std::uint32_t pages,
                       Context& context) {
-    constexpr double kFull = 0.95;  // of a page, about: too much is halved, too little leaves pages half empty
+    constexpr double kFull = 0.95;     // of a page, about: too much is halved, too little leaves pages half empty
     std::vector<std::uint32_t> first;  // item of each group
     for (std::uint32_t i = 0; i < items.size(); ++i)
         if (i == 0 || items[i - 1].group != items[i].group) first.push_back(i);

@@ -13,7 +13,7 @@ namespace lumel {
 // Items of one group (PackItem::group) and where they are in the world.
 struct PackPlace {
     std::uint32_t group = 0;
-    Vec3 centre{};  // metres
+    Vec3 centre{};           // metres
     std::uint64_t used = 0;  // texels of its masks, above 0
 };
 

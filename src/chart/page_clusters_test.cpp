@@ -91,7 +91,8 @@ TEST(PageClusters, NearObjectsShareAPage) {
     const Packing near = pack_clusters(town.masks, town.items, town.places, 64, 0, context);
     town.expect_sound(near, 64);
     ASSERT_GE(near.pages.size(), 8u);
-    // Of a square in n parts the distances are those of the whole by the root of n; pages by size are spread as the whole.
+    // Of a square in n parts the distances are those of the whole by the root of n; pages by size are spread as the
+    // whole.
     EXPECT_LT(town.spread(near), 0.6 * town.spread(fewest));
     // Halves that are a little more than a page are halved again: half full at worst.
     EXPECT_LE(near.pages.size(), 2 * fewest.pages.size());

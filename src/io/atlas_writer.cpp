@@ -94,9 +94,9 @@ Json page_json(std::uint32_t index, const AtlasPage& page, const PageFigures& fi
                const std::vector<MipFigures>& mips) {
     Json files = Json::object();
     for (const char* what : kPictures) files[what] = picture_file(what, index);
-    return {{"index", index},           {"width", page.width},        {"height", page.height},
-            {"used", figures.used},     {"covered", figures.covered}, {"efficiency", figures.efficiency},
-            {"mips", mips_json(mips)},  {"files", std::move(files)}};
+    return {{"index", index},          {"width", page.width},        {"height", page.height},
+            {"used", figures.used},    {"covered", figures.covered}, {"efficiency", figures.efficiency},
+            {"mips", mips_json(mips)}, {"files", std::move(files)}};
 }
 
 Json statistics_json(const AtlasStatistics& s, const Atlas& atlas) {

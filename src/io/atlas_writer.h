@@ -24,8 +24,8 @@ struct AtlasStatistics {
     std::uint64_t page_texels = 0;
     double efficiency = 0.0;       // used over page_texels
     std::vector<MipFigures> mips;  // of the declared ones, that of the pages themselves first
-    double mean_density = 0.0;  // texels per metre: root of texels over square metres
-    double stretch = 1.0;       // Sander's L2 of the charts
+    double mean_density = 0.0;     // texels per metre: root of texels over square metres
+    double stretch = 1.0;          // Sander's L2 of the charts
 };
 
 class AtlasWriter {

@@ -84,7 +84,9 @@ public:
     }
 
 private:
-    [[nodiscard]] std::filesystem::path file(PageFile kind) const { return folder_ / page_file(kind, map_.page, map_.mip); }
+    [[nodiscard]] std::filesystem::path file(PageFile kind) const {
+        return folder_ / page_file(kind, map_.page, map_.mip);
+    }
 
     [[nodiscard]] Vec3 irradiance(std::size_t texel) const {
         const auto& layers = map_.texels.layers[texel];

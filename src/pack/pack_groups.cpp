@@ -12,6 +12,8 @@ namespace {
 // Of the side of a square that its charts would fill: what is tried. An atlas of a few charts is dense at some widths
 // and not at others, by how the largest lie side by side.
 constexpr std::array<double, 8> kWidths{1.02, 1.0, 1.04, 1.07, 1.1, 1.15, 0.96, 0.9};
+constexpr std::array<double, 8> kMoreWidths{1.08, 1.12, 1.18, 1.22, 1.26, 1.3, 0.86, 0.82};  // where these are poor
+constexpr double kPoor = 0.92;
 
 std::uint32_t rounded_up(std::uint32_t edge, std::uint32_t multiple) {
     return (edge + multiple - 1) / multiple * multiple;
@@ -35,7 +37,13 @@ public:
         const std::uint32_t largest = options_.max_page != 0 ? options_.max_page : FreeMap::kMaxWidth;
         const std::uint32_t most = largest / options_.multiple * options_.multiple;
         std::vector<std::uint32_t> tried;
-        for (const double factor : kWidths) {
+        std::vector<double> factors(kWidths.begin(), kWidths.end());
+        factors.insert(factors.end(), kMoreWidths.begin(), kMoreWidths.end());
+        for (std::size_t k = 0; k < factors.size(); ++k) {
+            if (k == kWidths.size() && static_cast<double>(used) >= kPoor * static_cast<double>(best.area()) &&
+                best.width != 0)
+                break;
+            const double factor = factors[k];
             const auto wanted = std::max(static_cast<std::uint32_t>(std::ceil(factor * side)), widest);
             const std::uint32_t width = std::min(rounded_up(wanted, options_.multiple), most);
             if (std::ranges::find(tried, width) != tried.end()) continue;

@@ -24,8 +24,8 @@ struct GroupPage {
 };
 
 struct GroupPacking {
-    std::vector<PackedChart> charts;  // beside the masks; their page is their group
-    std::vector<GroupPage> groups;    // without size where no chart is of a group
+    std::vector<PackedChart> charts;       // beside the masks; their page is their group
+    std::vector<GroupPage> groups;         // without size where no chart is of a group
     std::vector<std::uint32_t> too_large;  // groups that max_page does not hold: their charts lie nowhere
     bool complete = false;                 // false: cancelled
 };

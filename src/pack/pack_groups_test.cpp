@@ -16,7 +16,8 @@ struct Set {
     std::vector<std::uint32_t> group_of;
     std::uint32_t groups = 0;
 
-    Set(std::size_t charts, std::uint32_t largest, std::uint64_t texels) : masks(test::random_masks(charts, largest, 5)) {
+    Set(std::size_t charts, std::uint32_t largest, std::uint64_t texels)
+        : masks(test::random_masks(charts, largest, 5)) {
         std::uint64_t used = texels;
         for (const ChartMask& mask : masks) {
             if (used >= texels) {

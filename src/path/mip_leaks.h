@@ -16,8 +16,8 @@ namespace lumel {
 
 inline constexpr std::uint32_t kMipLeakRays = 8;  // of a texel, evenly around: four may miss what stands askew
 
-// 1 for each texel where one of the rays, from half a texel of `mip` away, meets a back face. Both sides of double-sided
-// surfaces are fronts. Error: cancelled.
+// 1 for each texel where one of the rays, from half a texel of `mip` away, meets a back face. Both sides of
+// double-sided surfaces are fronts. Error: cancelled.
 Result<std::vector<std::uint8_t>> find_mip_leaks(const TexelBuffer& texels, const Transport& transport,
                                                  std::uint32_t mip, Context& context);
 

@@ -233,8 +233,7 @@ Result<Lightmap> finish_page(const TexelBuffer& buffer, RadianceSums sums, Texel
         if (map.texels.valid(i)) map.coverage[i] = Coverage::baked;
     LUMEL_TRY_STATUS(Filler(map, buffer).run(context));
     reserve(map, texels_with_rings(buffer, rings));
-    for (std::uint32_t ring = 0; ring < rings; ++ring)
-        LUMEL_TRY_STATUS(dilate_once(map, readers, context));
+    for (std::uint32_t ring = 0; ring < rings; ++ring) LUMEL_TRY_STATUS(dilate_once(map, readers, context));
     return map;
 }
 

@@ -44,6 +44,35 @@ expect 0 '' bake ok.gltf -o kept --atlas kept/manifest.json "${again[@]}"
 expect 0 '' atlas ok.gltf -o again --atlas flat/atlas.json
 [ "$(layout again/atlas.json)" = "$(layout flat/atlas.json)" ] || complain 'atlas did not keep the layout'
 
+# Layouts for other lookups: recorded, and gone on with.
+expect 0 '' atlas ok.gltf -o mips --texels-per-metre 16 --mips 2 --filter bicubic
+grep -q '"filter": "bicubic"' mips/atlas.json && [ "$(number mips/atlas.json mips)" = 2 ] || complain 'lookups are not recorded'
+expect 0 '' bake ok.gltf -o kept --atlas mips/atlas.json "${again[@]}"
+[ "$(layout kept/manifest.json)" = "$(layout mips/atlas.json)" ] || complain 'a layout for mips was not kept'
+for mip in 1 2; do
+    for kind in lightmap irradiance l1 master; do
+        [ -s "kept/${kind}_0_mip$mip.exr" ] || complain "bake wrote no ${kind} of mip $mip"
+    done
+done
+[ -e kept/lightmap_0_mip3.exr ] && complain 'bake wrote a mip that nobody asked for'
+expect 2 'leave out --filter, --mips and --block, or --atlas' atlas ok.gltf -o no --atlas mips/atlas.json --mips 3
+expect 0 '' bake ok.gltf -o kept --atlas flat/atlas.json "${again[@]}"
+[ -e kept/lightmap_0_mip1.exr ] && complain 'mips of an older bake stayed'
+expect 2 '--mips' atlas ok.gltf -o no --mips 7
+expect 2 '--block' atlas ok.gltf -o no --block 2
+expect 2 'no whole number of cells of 16' atlas ok.gltf -o no --mips 4 --resolution 100x100
+
+# Pages by place, and even charts.
+expect 0 '' atlas ok.gltf -o pages --texels-per-metre 16 --pages cluster
+[ "$(layout pages/atlas.json)" = "$(layout flat/atlas.json)" ] || complain 'one object has another layout by place'
+expect 2 '--pages' atlas ok.gltf -o no --pages 0
+expect 2 '--pages' atlas ok.gltf -o no --pages near
+expect 2 '--resolution' atlas ok.gltf -o no --pages 2 --resolution 64x64
+expect 2 '--atlas' atlas ok.gltf -o no --pages 2 --atlas flat/atlas.json
+expect 0 '' bake ok.gltf -o even --texels-per-metre 16 --collapse 0.01 "${again[@]}"
+grep -q 'of 1 charts are even enough' out.txt || complain "bake does not say what collapsed: $(cat out.txt)"
+expect 2 '--collapse' bake ok.gltf -o no --collapse 0.01 --resolution 64x64 "${again[@]}"
+
 # Where it cannot be kept.
 expect 2 '--texels-per-metre asks for 8' atlas ok.gltf -o no --atlas flat/atlas.json --texels-per-metre 8
 expect 2 '--resolution' bake ok.gltf -o no --atlas flat/atlas.json --resolution 64x64 "${again[@]}"
