@@ -189,8 +189,9 @@ Result<Lightmap> LayoutChange::page(std::uint32_t page, std::uint32_t rings, Con
         if (k == kNone || !collapsed_[k] || sources[pixel].placement != kNone) continue;
         // What its bounds reach is its own, as where it had been baked at this size.
         const ChartBox& box = now_.placements[k].box;
-        const double inset = now_.masks.inset() - 0.5, x = static_cast<double>(pixel % out.width) - box.x - inset,
-                     y = static_cast<double>(pixel / out.width) - box.y - inset;
+        const std::size_t row = pixel / out.width, column = pixel % out.width;
+        const double inset = now_.masks.inset() - 0.5;
+        const double x = static_cast<double>(column) - box.x - inset, y = static_cast<double>(row) - box.y - inset;
         sources[pixel] = {k, kNone, x > -1.0 && y > -1.0 && x < kSmallest && y < kSmallest};
     }
 
