@@ -17,7 +17,7 @@ void TexelMean::add(std::uint32_t texel) {
     sky_ += from.sky_visibility[texel];
     occlusion_ += from.ambient_occlusion[texel];
     count_ += from.count[texel];
-    traced_ += from.traced[texel];
+    open_ += from.open[texel];
     albedo_ += page_.surface.albedo[texel];
     emission_ += page_.surface.emission[texel];
     normal_ += page_.normal[texel];
@@ -38,7 +38,7 @@ void TexelMean::store(Lightmap& to, std::size_t texel, std::uint32_t chart) cons
     to.texels.ambient_occlusion[texel] = occlusion_ * s;
     constexpr std::uint64_t kMost = 0xffffffffu;
     to.texels.count[texel] = static_cast<std::uint32_t>(std::min(count_, kMost));
-    to.texels.traced[texel] = static_cast<std::uint32_t>(std::min(traced_, kMost));
+    to.texels.open[texel] = static_cast<std::uint32_t>(std::min(open_, kMost));
     to.surface.albedo[texel] = albedo_ * s;
     to.surface.emission[texel] = emission_ * s;
     to.normal[texel] = normalize_or(normal_, any_normal_);  // of a sheet and its back they cancel
@@ -54,7 +54,7 @@ void copy_texel(const Lightmap& from, std::size_t texel, Lightmap& to, std::size
     to.texels.sky_visibility[at] = from.texels.sky_visibility[texel];
     to.texels.ambient_occlusion[at] = from.texels.ambient_occlusion[texel];
     to.texels.count[at] = from.texels.count[texel];
-    to.texels.traced[at] = from.texels.traced[texel];
+    to.texels.open[at] = from.texels.open[texel];
     to.surface.albedo[at] = from.surface.albedo[texel];
     to.surface.emission[at] = from.surface.emission[texel];
     to.normal[at] = from.normal[texel];

@@ -26,7 +26,7 @@ private:
     std::array<LayerMoments, kLayerCount> layers_{};
     Vec3 variance_{}, difference_{}, bent_{}, albedo_{}, emission_{}, normal_{}, any_normal_{};
     float sky_ = 0.0f, occlusion_ = 0.0f;
-    std::uint64_t count_ = 0, traced_ = 0;
+    std::uint64_t count_ = 0, open_ = 0;
     Coverage coverage_ = Coverage::none;
 };
 
