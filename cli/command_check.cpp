@@ -21,29 +21,47 @@ struct Options {
     TexelCheckOptions texels;
 };
 
-// One line per figure; failed ones say so.
-void print(const SeamCheck& seams, const std::vector<Finding>& findings) {
-    std::printf("seams: %llu samples over %.1f m, and %.1f m that something stands on\n",
-                static_cast<unsigned long long>(seams.open.samples), seams.open.metres, seams.parted.metres);
-    for (const Finding& f : findings) {
-        const double unit = f.is_share ? 100.0 : 1.0;
-        std::printf("%s %-18s %10.*f%s", f.passed() ? "ok    " : "FAILED", f.name.c_str(), f.is_share ? 4 : 0,
-                    unit * f.value, f.is_share ? " %" : "  ");
-        if (f.limit >= 0.0) std::printf("  (at most %g%s)", unit * f.limit, f.is_share ? " %" : "");
-        std::printf("  %s", f.text.c_str());
-        if (!f.passed() && !f.places.empty())
-            std::printf("; first at page %u texel (%u, %u)", f.places[0].page, f.places[0].x, f.places[0].y);
-        std::printf("\n");
+void print(const SeamContrast& open, const SeamContrast& parted) {
+    if (open.samples == 0)
+        std::printf("seams: no seams to measure");
+    else
+        std::printf("seams: %llu samples over %.1f m", static_cast<unsigned long long>(open.samples), open.metres);
+    if (parted.samples > 0) std::printf(", and %.1f m that something stands on", parted.metres);
+    std::printf("\n");
+}
+
+// One line per figure: those with a limit have a verdict, and where it is FAILED the option that would allow it.
+void print(const Finding& f) {
+    const double unit = f.is_share ? 100.0 : 1.0;
+    std::printf("%s %-18s %10.*f%s",
+                !f.has_limit() ? "      "
+                : f.passed()   ? "ok    "
+                               : "FAILED",
+                f.name.c_str(), f.is_share ? 4 : 0, unit * f.value, f.is_share ? " %" : "  ");
+    if (f.has_limit()) {
+        std::printf("  (at most %g%s", unit * f.limit, f.is_share ? " %" : "");
+        if (!f.passed()) std::printf(", by %s %g", f.option.c_str(), f.limit);
+        std::printf(")");
     }
+    std::printf("  %s", f.text.c_str());
+    if (!f.passed() && !f.places.empty())
+        std::printf("; first at page %u texel (%u, %u)", f.places[0].page, f.places[0].x, f.places[0].y);
+    std::printf("\n");
+}
+
+void print_all(const SeamCheck& seams, const std::vector<Finding>& findings) {
+    print(seams.open, seams.parted);
+    for (const Finding& f : findings)
+        if (f.is_measured) print(f);
 }
 
 // Whether all limits are kept.
 Result<bool> run_in(const Options& options, Context& context) {
-    LUMEL_TRY(const BakeOnDisk disk, read_bake(options.folder));
+    LUMEL_TRY(const BakeOnDisk disk, read_bake(options.folder, context));
     LUMEL_TRY(const WorldGeometry geometry, flatten(disk.scene, context));
     LUMEL_TRY(const auto tracer, make_embree_tracer(geometry, SurfaceReader(disk.scene, geometry), context));
     LUMEL_TRY(const SeamCheck seams, check_seams(disk.bake, {}, *tracer, context));
-    const TexelCheck texels = check_texels(disk.bake, options.texels);
+    LUMEL_TRY(const TexelCheck texels, check_texels(disk.bake, options.texels, context));
     const std::vector<Finding> findings = judge(seams, texels, options.limits);
     const CheckReport report{disk.bake, seams, texels, findings};
     if (!options.html.empty()) {
@@ -53,7 +71,7 @@ Result<bool> run_in(const Options& options, Context& context) {
     if (options.json)
         std::fputs(check_json(report).c_str(), stdout);
     else
-        print(seams, findings);
+        print_all(seams, findings);
     return std::ranges::all_of(findings, &Finding::passed);
 }
 
@@ -71,8 +89,9 @@ Run add_check(CLI::App& app) {
     auto options = std::make_shared<Options>();
     CheckLimits& limits = options->limits;
     app.add_option("DIR", options->folder, "Output folder of lumel bake")->required();
-    app.add_flag("--json", options->json, "Print JSON");
-    app.add_option("--html", options->html, "A page with pictures of what was found")->check(not_empty());
+    app.add_flag("--json", options->json, "Print JSON instead of text");
+    app.add_option("--html", options->html, "Write a page with pictures of what was found to this file")
+        ->check(not_empty());
     const std::string gate = "At most (-1: any)";
     const auto limit = [&](const char* name, double& value, const char* what) {
         app.add_option(name, value, what)->check(between(-1.0, 1e12))->group(gate);

@@ -73,7 +73,7 @@ std::vector<std::string> failures(const CheckedBake& bake) {
     limits.seam_p99 = 0.005;
     limits.seam_visible = limits.invalid = limits.unconverged = limits.outliers = limits.black = 0.0;
     std::vector<std::string> out;
-    for (const Finding& f : judge(seams, check_texels(bake, {}), limits))
+    for (const Finding& f : judge(seams, check_texels(bake, {}, context).value(), limits))
         if (!f.passed()) out.push_back(f.name);
     return out;
 }
@@ -168,13 +168,91 @@ TEST(Check, FindsAnUnconvergedPatch) {
     EXPECT_EQ(failures(bake), Names{"unconverged"});
 }
 
+// n x n tiles of `metres` side by side, 8 texels across, each of another brightness than its neighbours.
+CheckedBake chequered_bake(std::uint32_t n, float metres) {
+    constexpr std::uint32_t kTexels = 8, kStep = kTexels + 4;
+    const std::uint32_t edge = n * kStep + 4;
+    CheckedBake bake;
+    bake.pages.push_back({edge, edge, Image(edge, edge, 3), std::vector<TexelState>(std::size_t{edge} * edge), {}});
+    CheckedPage& page = bake.pages[0];
+    for (std::uint32_t j = 0; j < n; ++j)
+        for (std::uint32_t i = 0; i < n; ++i) {
+            const std::uint32_t left = i * kStep + 3, top = j * kStep + 3;
+            const float light = 1.0f + 0.01f * static_cast<float>((7 * i + 13 * j) % 17);
+            for (std::uint32_t y = top; y < top + kTexels + 2; ++y)
+                for (std::uint32_t x = left; x < left + kTexels + 2; ++x) {
+                    page.state[std::size_t{y} * edge + x] = TexelState::baked;
+                    for (std::size_t c = 0; c < 3; ++c) page.light.at(x, y)[c] = light;
+                }
+            CheckedTriangle t;
+            t.instance = j * n + i;
+            bake.instances.push_back("tile");
+            const auto corner = [&](std::size_t k, std::uint32_t u, std::uint32_t v) {
+                t.position[k] = Vec3{static_cast<float>(i + u), 0, static_cast<float>(j + v)} * metres;
+                t.normal[k] = {0, 1, 0};
+                t.uv[k] = Vec2{static_cast<float>(left + 1 + u * kTexels), static_cast<float>(top + 1 + v * kTexels)} *
+                          (1.0f / static_cast<float>(edge));
+            };
+            for (const std::uint32_t second : {0u, 1u}) {
+                corner(0, 0, 0);
+                corner(1, second, 1);
+                corner(2, 1, 1 - second);
+                bake.triangles.push_back(t);
+            }
+        }
+    return bake;
+}
+
+SeamCheck seams_of(const CheckedBake& bake, unsigned threads) {
+    Context context(threads);
+    return check_seams(bake, {}, EmptyTracer(), context).value();
+}
+
+// Within a millimetre of each border of the second lie all others; of its texels, which are 25 micrometres, none.
+TEST(Check, FindsTheSeamsOfScenesOfMillimetres) {
+    constexpr std::uint32_t kTiles = 5;
+    const SeamCheck metres = seams_of(chequered_bake(kTiles, 1.0f), 1);
+    const SeamCheck millimetres = seams_of(chequered_bake(kTiles, 2e-4f), 1);
+    EXPECT_NEAR(metres.open.metres, 2.0 * kTiles * (kTiles - 1), 1e-4);
+    EXPECT_EQ(millimetres.open.samples, metres.open.samples);
+    EXPECT_NEAR(millimetres.open.metres, 2e-4 * metres.open.metres, 1e-7);
+    EXPECT_NEAR(millimetres.open.p99, metres.open.p99, 1e-4);
+}
+
+// 2304 borders: chunks for three threads, of whose samples no two tiles have the same contrasts.
 TEST(Check, SameBitsForAnyNumberOfThreads) {
+    const CheckedBake bake = chequered_bake(24, 1.0f);
+    const SeamCheck one = seams_of(bake, 1);
+    ASSERT_GT(one.open.samples, 20000u);
+    ASSERT_GT(one.worst.size(), 50u);
+    for (const unsigned threads : {2u, 4u}) {
+        const SeamCheck many = seams_of(bake, threads);
+        EXPECT_EQ(one.open.samples, many.open.samples);
+        EXPECT_EQ(one.open.metres, many.open.metres);
+        EXPECT_EQ(one.open.visible_metres, many.open.visible_metres);
+        EXPECT_EQ(one.open.median, many.open.median);
+        EXPECT_EQ(one.open.p99, many.open.p99);
+        ASSERT_EQ(one.worst.size(), many.worst.size());
+        for (std::size_t i = 0; i < one.worst.size(); ++i) {
+            EXPECT_EQ(one.worst[i].contrast, many.worst[i].contrast);
+            EXPECT_EQ(one.worst[i].position, many.worst[i].position);
+            EXPECT_EQ(one.worst[i].instance_a, many.worst[i].instance_a);
+            EXPECT_EQ(one.worst[i].instance_b, many.worst[i].instance_b);
+        }
+    }
+}
+
+// All that takes long asks, also where it is not in parallel.
+TEST(Check, StopsWhereCancelled) {
+    Context context(1);
+    context.request_cancel();
     const CheckedBake bake = clean_bake();
-    Context one(1), four(4);
-    const SeamCheck a = check_seams(bake, {}, EmptyTracer(), one).value();
-    const SeamCheck b = check_seams(bake, {}, EmptyTracer(), four).value();
-    EXPECT_EQ(a.open.p99, b.open.p99);
-    EXPECT_EQ(a.open.metres, b.open.metres);
+    const auto seams = check_seams(bake, {}, EmptyTracer(), context);
+    ASSERT_FALSE(seams.ok());
+    EXPECT_EQ(seams.error().code, ErrorCode::cancelled);
+    const auto texels = check_texels(bake, {}, context);
+    ASSERT_FALSE(texels.ok());
+    EXPECT_EQ(texels.error().code, ErrorCode::cancelled);
 }
 
 }  // namespace

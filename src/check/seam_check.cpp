@@ -16,7 +16,8 @@ struct Border {
 };
 
 // Edges that no second triangle has at the same place of the same page.
-std::vector<Border> borders_of(const CheckedBake& bake) {
+// Cut short where cancelled.
+std::vector<Border> borders_of(const CheckedBake& bake, const Context& context) {
     struct Edge {
         std::uint32_t page, triangle, corner;
         Vec2 low, high;
@@ -31,6 +32,7 @@ std::vector<Border> borders_of(const CheckedBake& bake) {
             if (std::tuple(b.x, b.y) < std::tuple(a.x, a.y)) std::swap(a, b);
             edges.push_back({triangle.page, t, k, a, b});
         }
+    if (context.cancelled()) return {};
     std::ranges::sort(edges, [](const Edge& a, const Edge& b) {
         return std::tuple(a.key(), a.triangle, a.corner) < std::tuple(b.key(), b.triangle, b.corner);
     });
@@ -42,15 +44,17 @@ std::vector<Border> borders_of(const CheckedBake& bake) {
     return out;
 }
 
-// Borders by the cells of a grid that they pass through.
+// Borders by the cells of a grid that they pass through, and those within a distance of them. Cut short where
+// cancelled.
 class BorderGrid {
 public:
-    BorderGrid(const CheckedBake& bake, const std::vector<Border>& borders, double distance)
+    BorderGrid(const CheckedBake& bake, const std::vector<Border>& borders, double distance, const Context& context)
         : bake_(bake), borders_(borders), distance_(distance) {
         double sum = 0.0;
         for (const Border& border : borders) sum += static_cast<double>(length(to(border) - from(border)));
         cell_ = std::max(8.0 * distance, sum / static_cast<double>(std::max<std::size_t>(1, borders.size())));
-        for (std::uint32_t b = 0; b < borders.size(); ++b) insert(b);
+        for (std::uint32_t b = 0; b < borders.size() && !context.cancelled(); ++b) insert(b);
+        if (context.cancelled()) return;
         std::ranges::sort(entries_);
         entries_.erase(std::unique(entries_.begin(), entries_.end()), entries_.end());
     }
@@ -129,11 +133,13 @@ constexpr std::array<float, 3> kReaches{1.0f, 2.0f, 3.0f};
 
 class SeamSearch {
 public:
-    SeamSearch(const CheckedBake& bake, const SeamCheckOptions& options)
+    // Of no use where cancelled.
+    SeamSearch(const CheckedBake& bake, const SeamCheckOptions& options, const Context& context)
         : bake_(bake),
           options_(options),
-          borders_(borders_of(bake)),
-          grid_(bake, borders_, options.distance),
+          borders_(borders_of(bake, context)),
+          distance_(distances()),
+          grid_(bake, borders_, distance_.empty() ? 0.0 : std::ranges::max(distance_), context),
           mean_(mean_light(bake)) {}
 
     [[nodiscard]] std::size_t size() const { return borders_.size(); }
@@ -152,7 +158,8 @@ public:
             const Point point = at(border, (static_cast<float>(k) + 0.5f) / static_cast<float>(n));
             grid_.for_each_in_cell(point.position, [&](std::uint32_t other) {
                 if (borders_[other].triangle == border.triangle) return;
-                compare(border, point, borders_[other], texels, metres, metres / n, out);
+                const double distance = std::min(distance_[index], distance_[other]);
+                compare(border, point, borders_[other], distance, texels / metres, metres / n, out);
             });
         }
     }
@@ -169,22 +176,39 @@ private:
                 normalize_or(across - along * dot(across, along), {}), a + (b - a) * t};
     }
 
+    [[nodiscard]] double length_of(const Border& border) const {
+        return static_cast<double>(length(grid_.to(border) - grid_.from(border)));
+    }
+
     [[nodiscard]] Point nearest(const Border& border, Vec3 p) const {
         const Vec3 from = grid_.from(border), way = grid_.to(border) - from;
         const float squared = dot(way, way);
         return at(border, squared > 0.0f ? std::clamp(dot(p - from, way) / squared, 0.0f, 1.0f) : 0.0f);
     }
 
-    // `texels`, `length_of_border`: of the border that a lies on.
-    void compare(const Border& border, const Point& a, const Border& other, double texels, double length_of_border,
+    // Metres within which another border is the same line.
+    [[nodiscard]] std::vector<double> distances() const {
+        std::vector<double> out;
+        out.reserve(borders_.size());
+        for (const Border& border : borders_) {
+            const Point from = at(border, 0.0f), to = at(border, 1.0f);
+            const double texels = static_cast<double>(length(to.texels - from.texels));
+            const double metres = static_cast<double>(length(to.position - from.position));
+            out.push_back(std::min(options_.distance, options_.distance_in_texels * metres / std::max(texels, 1e-6)));
+        }
+        return out;
+    }
+
+    // `density`: texels per metre of the border that a lies on.
+    void compare(const Border& border, const Point& a, const Border& other, double distance, double density,
                  double metres, Found& out) const {
         const Point b = nearest(other, a.position);
-        if (static_cast<double>(length(a.position - b.position)) > options_.distance) return;
+        if (static_cast<double>(length(a.position - b.position)) > distance) return;
         if (static_cast<double>(dot(a.normal, b.normal)) < options_.normal_cosine) return;
         if (dot(a.inward, b.inward) > 0.5f) return;  // layers: one lies on the other
         const CheckedTriangle &ta = bake_.triangles[border.triangle], &tb = bake_.triangles[other.triangle];
         // Around a corner of one border lies the same place of the layout.
-        const double same = 0.02 + 2.0 * options_.distance * texels / length_of_border;
+        const double same = 0.02 + 2.0 * distance * density;
         if (ta.page == tb.page && static_cast<double>(length(a.texels - b.texels)) <= same) return;
         const double light_a = luminance_at(bake_.pages[ta.page], a.texels);
         const double light_b = luminance_at(bake_.pages[tb.page], b.texels);
@@ -192,13 +216,14 @@ private:
         const double contrast = scale > 0.0 ? std::fabs(light_a - light_b) / scale : 0.0;
         if (!std::isfinite(contrast)) return;  // another check's
         out.samples.push_back({{contrast, a.position, ta.instance, tb.instance, ta.page, a.texels}, metres});
-        const auto half_texel = static_cast<float>(0.5 * length_of_border / std::max(texels, 1.0));
+        const auto half_texel = static_cast<float>(0.5 / std::max(density, 1.0 / length_of(border)));
         for (const float reach : kReaches) out.rays.push_back(ray_between(a, b, reach * half_texel, half_texel));
     }
 
     const CheckedBake& bake_;
     SeamCheckOptions options_;
     std::vector<Border> borders_;
+    std::vector<double> distance_;  // per border
     BorderGrid grid_;
     double mean_;
 };
@@ -245,7 +270,8 @@ std::vector<SeamDefect> worst_of(std::vector<Sample> samples, double visible) {
 Result<SeamCheck> check_seams(const CheckedBake& bake, const SeamCheckOptions& options, const Tracer& tracer,
                               Context& context) {
     constexpr std::size_t kBordersPerChunk = 1024;
-    const SeamSearch search(bake, options);
+    const SeamSearch search(bake, options, context);
+    if (context.cancelled()) return cancelled_error();
     std::vector<std::vector<Sample>> parts((search.size() + kBordersPerChunk - 1) / kBordersPerChunk);
     const bool done = parallel_for(
         context, search.size(), kBordersPerChunk,
@@ -262,7 +288,9 @@ Result<SeamCheck> check_seams(const CheckedBake& bake, const SeamCheckOptions& o
     if (!done) return cancelled_error();
     std::vector<Sample> samples;
     for (const std::vector<Sample>& part : parts) samples.insert(samples.end(), part.begin(), part.end());
+    if (context.cancelled()) return cancelled_error();
     std::ranges::stable_sort(samples, {}, [](const Sample& s) { return s.defect.contrast; });
+    if (context.cancelled()) return cancelled_error();
     SeamCheck out;
     out.open = contrast_of(samples, false, options.visible);
     out.parted = contrast_of(samples, true, options.visible);

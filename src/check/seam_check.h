@@ -14,6 +14,7 @@ namespace lumel {
 
 struct SeamCheckOptions {
     double distance = 1e-3;            // metres between two points of borders that are taken for one
+    double distance_in_texels = 0.1;   // and of the texels of either: in scenes of millimetres all is within one
     double normal_cosine = 0.9396926;  // 20 degrees
     double points_per_texel = 2.0;     // along borders
     double visible = 0.01;             // contrast from which the eye sees a seam

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/cancelled.h"
 #include "chart/overlap.h"
 #include "check/lookup.h"
 
@@ -21,9 +22,8 @@ public:
               TexelCheck& out)
         : page_(page), index_(index), mean_(mean), options_(options), out_(out) {}
 
-    void run() {
-        for (std::uint32_t y = 0; y < page_.height; ++y)
-            for (std::uint32_t x = 0; x < page_.width; ++x) texel(x, y);
+    void row(std::uint32_t y) {
+        for (std::uint32_t x = 0; x < page_.width; ++x) texel(x, y);
     }
 
 private:
@@ -114,24 +114,22 @@ void check_coverage(const CheckedBake& bake, TexelCheck& out) {
         }
 }
 
-void check_overlaps(const CheckedBake& bake, TexelCheck& out) {
+void check_overlaps(const CheckedBake& bake, std::uint32_t page, TexelCheck& out) {
     constexpr std::size_t kMostPairs = 10000;
-    for (std::uint32_t p = 0; p < bake.pages.size(); ++p) {
-        std::vector<UvTriangle> triangles;
-        std::vector<const CheckedTriangle*> source;
-        for (const CheckedTriangle& t : bake.triangles) {
-            if (t.page != p) continue;
-            triangles.push_back({bake.texels(t, 0), bake.texels(t, 1), bake.texels(t, 2)});
-            source.push_back(&t);
-        }
-        // Texels: a tenth of one shows on none; rounding of coordinates in 0..1 is a thousandth of one at most.
-        const OverlapSearch found = find_overlaps(triangles, {0.004, 0.1, 0.1}, kMostPairs);
-        for (const auto& [a, b] : found.pairs) {
-            const Vec2 texels = overlap_centre(triangles[a], triangles[b]);
-            out.overlaps.add(place_of(bake, *source[a],
-                                      {texels.x / static_cast<float>(bake.pages[p].width),
-                                       texels.y / static_cast<float>(bake.pages[p].height)}));
-        }
+    std::vector<UvTriangle> triangles;
+    std::vector<const CheckedTriangle*> source;
+    for (const CheckedTriangle& t : bake.triangles) {
+        if (t.page != page) continue;
+        triangles.push_back({bake.texels(t, 0), bake.texels(t, 1), bake.texels(t, 2)});
+        source.push_back(&t);
+    }
+    // Texels: a tenth of one shows on none; rounding of coordinates in 0..1 is a thousandth of one at most.
+    const OverlapSearch found = find_overlaps(triangles, {0.004, 0.1, 0.1}, kMostPairs);
+    for (const auto& [a, b] : found.pairs) {
+        const Vec2 texels = overlap_centre(triangles[a], triangles[b]);
+        out.overlaps.add(place_of(bake, *source[a],
+                                  {texels.x / static_cast<float>(bake.pages[page].width),
+                                   texels.y / static_cast<float>(bake.pages[page].height)}));
     }
 }
 
@@ -171,12 +169,23 @@ void check_density(const CheckedBake& bake, const TexelCheckOptions& options, Te
 
 }  // namespace
 
-TexelCheck check_texels(const CheckedBake& bake, const TexelCheckOptions& options) {
+Result<TexelCheck> check_texels(const CheckedBake& bake, const TexelCheckOptions& options, Context& context) {
     TexelCheck out;
     const double mean = mean_light(bake);
-    for (std::uint32_t p = 0; p < bake.pages.size(); ++p) PageCheck(bake.pages[p], p, mean, options, out).run();
+    const auto pages = static_cast<std::uint32_t>(bake.pages.size());
+    for (std::uint32_t p = 0; p < pages; ++p) {
+        PageCheck page(bake.pages[p], p, mean, options, out);
+        for (std::uint32_t y = 0; y < bake.pages[p].height; ++y) {
+            if (context.cancelled()) return cancelled_error();
+            page.row(y);
+        }
+        if (context.cancelled()) return cancelled_error();
+        check_overlaps(bake, p, out);
+        context.report("texels", static_cast<double>(p + 1) / static_cast<double>(pages));
+    }
+    if (context.cancelled()) return cancelled_error();
     check_coverage(bake, out);
-    check_overlaps(bake, out);
+    if (context.cancelled()) return cancelled_error();
     check_density(bake, options, out);
     return out;
 }

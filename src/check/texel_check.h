@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "check/checked_bake.h"
+#include "lumel/context.h"
+#include "lumel/result.h"
 
 namespace lumel {
 
@@ -42,6 +44,7 @@ struct TexelCheck {
 };
 
 // Density is judged only where it shows: of surfaces that have, or at the median density would have, 16 texels.
-TexelCheck check_texels(const CheckedBake& bake, const TexelCheckOptions& options);
+// Stage "texels". Error: cancelled.
+Result<TexelCheck> check_texels(const CheckedBake& bake, const TexelCheckOptions& options, Context& context);
 
 }  // namespace lumel

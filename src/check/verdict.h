@@ -21,16 +21,19 @@ struct CheckLimits {
 };
 
 struct Finding {
-    std::string name;  // stable, snake_case: a key in JSON
-    std::string text;  // what it is, for people
+    std::string name;    // stable, snake_case: a key in JSON
+    std::string text;    // what it is, for people
+    std::string option;  // of `lumel check`: its limit
     double value = 0.0, limit = -1.0;
     bool is_share = false;  // shown in percent
     std::vector<TexelDefect> places;
+    bool is_measured = true;  // false: there was nothing to measure, and the value is 0
 
+    [[nodiscard]] bool has_limit() const { return limit >= 0.0; }
     [[nodiscard]] bool passed() const { return limit < 0.0 || value <= limit; }
 };
 
-// In a fixed order: all figures that have a limit.
+// In a fixed order: all figures that can have a limit.
 std::vector<Finding> judge(const SeamCheck& seams, const TexelCheck& texels, const CheckLimits& limits);
 
 }  // namespace lumel

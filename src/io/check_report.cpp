@@ -54,7 +54,7 @@ std::string value_text(const Finding& f, double value) {
     return text.data();
 }
 
-std::string limit_text(const Finding& f) { return f.limit < 0.0 ? "any" : value_text(f, f.limit); }
+std::string limit_text(const Finding& f) { return f.has_limit() ? value_text(f, f.limit) : "any"; }
 
 // Frames of 7 x 7 texels around places, so that a single one is seen.
 void mark(std::span<const Finding> findings, std::uint32_t page, std::uint32_t width, std::uint32_t height,
@@ -105,7 +105,7 @@ std::string check_json(const CheckReport& report) {
         for (const TexelDefect& d : f.places) places.push_back({d.page, d.x, d.y});
         out["findings"].push_back({{"name", f.name},
                                    {"value", f.value},
-                                   {"limit", f.limit < 0.0 ? Json() : Json(f.limit)},
+                                   {"limit", f.has_limit() ? Json(f.limit) : Json()},
                                    {"passed", f.passed()},
                                    {"places", std::move(places)}});
     }
@@ -131,8 +131,12 @@ std::string check_html(const CheckReport& report, const std::string& title) {
         "{color:#6d6}img{max-width:100%;image-rendering:pixelated;border:1px solid #555}</style>\n<h1>lumel check: ";
     out += escape(title) + "</h1>\n<table><tr><th>what<th>value<th>allowed<th></tr>\n";
     for (const Finding& f : report.findings)
-        out += "<tr><td>" + f.text + "<td>" + value_text(f, f.value) + "<td>" + limit_text(f) +
-               "<td class=" + (f.passed() ? "good>passed" : "bad>failed") + "</tr>\n";
+        out += "<tr><td>" + f.text + "<td>" + (f.is_measured ? value_text(f, f.value) : "no seams") + "<td>" +
+               limit_text(f) + "<td" +
+               (!f.has_limit() ? ">"
+                : f.passed()   ? " class=good>passed"
+                               : " class=bad>failed: " + f.option) +
+               "</tr>\n";
     out += "</table>\n<h2>Worst seams</h2>\n<table><tr><th>contrast<th>position (m)<th>nodes<th>page<th>texel</tr>\n";
     constexpr std::size_t kShown = 20;
     for (std::size_t i = 0; i < std::min(kShown, report.seams.worst.size()); ++i) {

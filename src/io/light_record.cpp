@@ -6,6 +6,7 @@
 #include "io/image_io.h"
 #include "io/light_json.h"
 #include "io/page_files.h"
+#include "io/read_manifest.h"
 #include "path/radiance_sums.h"
 
 namespace lumel {
@@ -127,9 +128,9 @@ Json layer_names(const Include& include) {
 }
 
 Result<LightRecord> read_light_record(const fs::path& folder) {
-    const fs::path path = folder / kManifestFile;
-    LUMEL_TRY(const std::vector<std::byte> bytes, read_file(path, kMaxManifest));
-    return parse_light_record({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, folder, path.string());
+    LUMEL_TRY(const std::vector<std::byte> bytes, read_manifest(folder));
+    return parse_light_record({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, folder,
+                              (folder / kManifestFile).string());
 }
 
 Result<LightRecord> parse_light_record(std::string_view manifest, const fs::path& folder, const std::string& where) {

@@ -9,6 +9,7 @@
 #include "io/json_read.h"
 #include "io/light_record.h"
 #include "io/page_files.h"
+#include "io/read_manifest.h"
 #include "lumel/scene.h"
 #include "path/radiance_sums.h"
 
@@ -128,10 +129,9 @@ Result<MasterPage> read_master(const MasterFile& master, const LayerWeights& lay
 }
 
 Result<MasterList> list_masters(const std::filesystem::path& folder) {
-    const std::filesystem::path path = folder / kManifestFile;
-    LUMEL_TRY(const std::vector<std::byte> bytes, read_file(path, kMaxManifest));
-    LUMEL_TRY(MasterList out,
-              parse_master_list({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, folder, path.string()));
+    LUMEL_TRY(const std::vector<std::byte> bytes, read_manifest(folder));
+    LUMEL_TRY(MasterList out, parse_master_list({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, folder,
+                                                (folder / kManifestFile).string()));
     out.manifest_hash = Hasher().bytes(bytes).finish().hex();
     return out;
 }
@@ -163,7 +163,7 @@ Status check_unchanged(const MasterList& list) {
     LUMEL_TRY(const std::string hash, hash_file(list.manifest));
     if (hash != list.manifest_hash)
         return Error{ErrorCode::io, "was replaced by another bake meanwhile", list.manifest.parent_path().string(),
-                     "encode again"};
+                     "run the command again"};
     return success();
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/cancelled.h"
 #include "base/try.h"
 #include "chart/topology.h"
 #include "encode/units.h"
@@ -109,13 +110,15 @@ Status add_instance(const LoadedScene& loaded, std::uint32_t index, CheckedBake&
 
 }  // namespace
 
-Result<BakeOnDisk> read_bake(const std::filesystem::path& folder) {
+Result<BakeOnDisk> read_bake(const std::filesystem::path& folder, Context& context) {
     BakeOnDisk out;
     CheckedBake& bake = out.bake;
     LUMEL_TRY(const MasterList masters, list_masters(folder));
     for (std::uint32_t p = 0; p < masters.pages.size(); ++p) {
+        if (context.cancelled()) return cancelled_error();
         LUMEL_TRY(CheckedPage page, read_page(masters.pages[p], p));
         bake.pages.push_back(std::move(page));
+        context.report("load", static_cast<double>(p + 1) / static_cast<double>(masters.pages.size()));
     }
     Context quiet(1);  // that this scene was baked already, and what else its file is warned of, is known
     LUMEL_TRY(LoadedScene loaded, load_scene(folder / kSceneFile, quiet));
@@ -124,6 +127,7 @@ Result<BakeOnDisk> read_bake(const std::filesystem::path& folder) {
                        "give the output folder of lumel bake");
     for (std::uint32_t i = 0; i < loaded.scene.instances.size(); ++i) {
         bake.instances.push_back(loaded.scene.instances[i].name);
+        if (context.cancelled()) return cancelled_error();
         const std::size_t before = bake.triangles.size();
         LUMEL_TRY_STATUS(add_instance(loaded, i, bake));
         // A sidecar that the folder does not have may have said so.
@@ -131,6 +135,7 @@ Result<BakeOnDisk> read_bake(const std::filesystem::path& folder) {
     }
     if (bake.triangles.empty())
         return invalid((folder / kSceneFile).string(), "has no lightmapped surface", "bake again");
+    LUMEL_TRY_STATUS(check_unchanged(masters));
     out.scene = std::move(loaded.scene);
     return out;
 }

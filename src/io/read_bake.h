@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "check/checked_bake.h"
+#include "lumel/context.h"
 #include "lumel/result.h"
 #include "lumel/scene.h"
 
@@ -14,8 +15,9 @@ struct BakeOnDisk {
     CheckedBake bake;
 };
 
-// All pages at once: some 40 bytes a pixel. Errors: io; invalid_input where the folder holds no bake, or files that do
-// not belong together.
-Result<BakeOnDisk> read_bake(const std::filesystem::path& folder);
+// All pages at once: some 40 bytes a pixel. Errors: io, also where another bake replaced this one meanwhile;
+// invalid_input where the folder holds no bake, or files that do not belong together.
+// Stage "load". Also cancelled.
+Result<BakeOnDisk> read_bake(const std::filesystem::path& folder, Context& context);
 
 }  // namespace lumel

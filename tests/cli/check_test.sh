@@ -6,15 +6,22 @@
 
 expect 0 '' bake ok.gltf -o out --texels-per-metre 16 --samples 64 --views 0 --sky 1,1,1 --preset preview
 expect 0 '' check out
+grep -q '^seams: no seams to measure$' out.txt || complain "a floor of one piece has seams: $(cat out.txt)"
+grep -q 'seam_p99' out.txt && complain "there is a figure of seams that are none: $(cat out.txt)"
+grep -q '^ok .*not_finite .*(at most 0)' out.txt || complain "a limit that is kept is not ok: $(cat out.txt)"
+grep -q '^  *unconverged .*--noisy' out.txt || complain "a figure without a limit has a verdict: $(cat out.txt)"
 grep -q 'not_finite\|hold no number' out.txt || complain "check says nothing of what it looked at: $(cat out.txt)"
 expect 0 '' check out --json --html page.html
 grep -q '"passed": *true' out.txt || complain "the JSON does not say that all is well: $(cat out.txt)"
 grep -qi '<html' page.html || complain 'there is no page'
 # No bake is without any noise.
-expect 1 '' check out --max-unconverged 0 --noisy 0.000001
-expect 1 'empty' check empty
+expect 1 '' check out --max-unconverged 0 --noisy 0.000001 --html noisy.html
+grep -q '^FAILED unconverged .*by --max-unconverged 0)' out.txt || complain "what failed names no option: $(cat out.txt)"
+grep -q 'class=bad>failed: --max-unconverged' noisy.html || complain 'the page names no option'
+expect 1 'empty: there is no such folder' check empty
 mkdir empty
-expect 1 'empty' check empty
+expect 1 'empty: is no bake of lumel' check empty
+expect 1 'ok.gltf: is a file, not the folder of a bake' check ok.gltf
 cp -r out cut
 head -c 300 out/lightmap_0.exr >cut/lightmap_0.exr
 expect 1 'cut/' check cut
