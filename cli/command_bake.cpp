@@ -247,22 +247,27 @@ Run add_bake(CLI::App& app) {
         ->group(transport);
     app.add_option("--time", options->time,
                    "Seconds of tracing to end within (denoising, files, views come on top): as many samples as fit")
+        ->default_str("off")
         ->check(between(1e-3, 1e7))
         ->group(transport);
     app.add_option("--error", options->error,
                    "Relative error of a texel to stop at, for example 0.05; --samples bounds its paths")
+        ->default_str("off")
         ->check(between(1e-6, 1.0))
         ->group(transport);
-    app.add_option("--confidence", options->confidence, "Confidence of --error (0.95)")
+    app.add_option("--confidence", options->confidence, "Confidence of --error")
+        ->default_str("0.95")
         ->check(between(0.5, 0.9999))
         ->group(transport);
     app.add_option("--stop", options->stop,
                    "fixed: every texel takes --samples; error: each stops at --error by what its neighbours measured; "
                    "flux: by its own samples (published rule, biased on rare light)")
+        ->default_str("fixed; error with --error")
         ->check(CLI::IsMember({"fixed", "error", "flux"}))
         ->group(transport);
     app.add_flag("--two-sided", values.two_sided, "Light both sides of double-sided surfaces")->group(transport);
     app.add_option("--max-memory", options->max_memory, "Ceiling such as 4G; pages shrink to fit it")
+        ->default_str("none")
         ->check(not_empty());
     options->light.declare(app, "the preset's");
     declare_progress(app, options->progress);

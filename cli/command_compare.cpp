@@ -1,12 +1,14 @@
 // lumel compare A B: how far image A is from reference B.
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "base/try.h"
 #include "command.h"
 #include "image/metrics.h"
 #include "io/image_io.h"
+#include "io/page_files.h"
 
 namespace lumel::cli {
 namespace {
@@ -40,9 +42,19 @@ Status warn_of_mixed_kinds(const Options& options) {
     return success();
 }
 
+// A bake is no image, but has some.
+Result<Image> read_compared(const std::string& path) {
+    std::error_code ignored;
+    if (std::filesystem::is_directory(path, ignored))
+        return Error{ErrorCode::io, "is a folder", path,
+                     "give an image; of the folder of a bake, a page of it such as " +
+                         (std::filesystem::path(path) / page_file(PageFile::lightmap, 0)).string()};
+    return read_image(path);
+}
+
 Result<ImageMetrics> measure(const Options& options) {
-    LUMEL_TRY(Image image, read_image(options.image));
-    LUMEL_TRY(Image reference, read_image(options.reference));
+    LUMEL_TRY(Image image, read_compared(options.image));
+    LUMEL_TRY(Image reference, read_compared(options.reference));
     LUMEL_TRY_STATUS(warn_of_mixed_kinds(options));
     const auto size = [](const Image& i) { return std::to_string(i.width) + "x" + std::to_string(i.height); };
     if (image.width != reference.width || image.height != reference.height)
@@ -52,7 +64,7 @@ Result<ImageMetrics> measure(const Options& options) {
     const std::uint32_t channels = std::min({image.channels, reference.channels, 3u});
     Mask mask;
     if (!options.mask.empty()) {
-        LUMEL_TRY(const Image mask_image, read_image(options.mask));
+        LUMEL_TRY(const Image mask_image, read_compared(options.mask));
         if (mask_image.width != image.width || mask_image.height != image.height)
             return Error{ErrorCode::invalid_input,
                          "the mask is " + size(mask_image) + " but the images are " + size(image), options.mask,
@@ -124,11 +136,14 @@ void print(const ImageMetrics& m) {
 
 Run add_compare(CLI::App& app) {
     auto options = std::make_shared<Options>();
-    app.add_option("A", options->image, "Image: EXR, HDR, PFM or PNG")->required();
-    app.add_option("B", options->reference, "Reference image")->required();
-    app.add_option("--mask", options->mask, "Compare only where this image is white");
+    app.add_option("A", options->image, "Image: EXR, HDR, PFM, PNG, JPEG or PGM")->required();
+    app.add_option("B", options->reference, "Reference image, of the same kinds")->required();
+    app.add_option("--mask", options->mask,
+                   "Compare only where this image is white: PGM, PNG or any of the above (default: everywhere)");
     app.add_option("--metric", options->metric, "What --max-error looks at")->check(CLI::IsMember({"nrmse", "relmse"}));
-    app.add_option("--max-error", options->max_error, "Exit with 1 above this error")->check(not_negative());
+    app.add_option("--max-error", options->max_error, "Exit with 1 above this error")
+        ->default_str("none")
+        ->check(not_negative());
     app.add_flag("--json", options->json, "Figures as JSON on standard output");
     return [options] {
         const Result<ImageMetrics> metrics = measure(*options);

@@ -103,6 +103,15 @@ std::uint32_t layers_of(const EncodedFormat& format, const MasterList& masters) 
     return one_size ? static_cast<std::uint32_t>(masters.pages.size()) : 0;
 }
 
+// What there is now; of many pages the first few.
+void print_files(const fs::path& folder, const EncodedOutput::Files& files) {
+    constexpr std::size_t kNamed = 8;
+    std::printf("description: %s\n", (folder / files.description).c_str());
+    for (std::size_t i = 0; i < std::min(kNamed, files.pages.size()); ++i)
+        std::printf("light: %s\n", (folder / files.pages[i]).c_str());
+    if (files.pages.size() > kNamed) std::printf("and %zu more\n", files.pages.size() - kNamed);
+}
+
 Status write_pages(const Options& options, const Choice& choice, const MasterList& masters, const LayerWeights& layers,
                    const LightRecord& record, RunContext& run) {
     Context& context = run.get();
@@ -116,7 +125,10 @@ Status write_pages(const Options& options, const Choice& choice, const MasterLis
         context.report("encode", static_cast<double>(p + 1) / static_cast<double>(masters.pages.size()));
     }
     if (!run.interrupt().begin_commit()) return cancelled_error();
-    return output.commit(masters);
+    LUMEL_TRY_STATUS(output.commit(masters));
+    run.finish();
+    print_files(folder, output.files());
+    return success();
 }
 
 Error usage(std::string what, std::string remedy = {}) {
@@ -203,20 +215,28 @@ std::vector<std::string> gpu_storages() {
 Run add_encode(CLI::App& app) {
     auto options = std::make_shared<Options>();
     app.add_option("DIR", options->folder, "Output folder of lumel bake")->required();
-    app.add_option("--encoding", options->encoding, "Name of an encoding, or auto: the one of least error")
+    app.add_option("--encoding", options->encoding,
+                   "Name of an encoding, or auto: the one of least error; needed, or --table")
         ->check(not_empty());
     app.add_option("--format", options->format, "exr: named channels; ktx2, dds: textures; PNG or .hdr")
+        ->default_str("exr; with auto, exr or ktx2")
         ->check(CLI::IsMember(names_of(encoded_formats())));
     app.add_option("--storage", options->storage, "Of ktx2 and dds: what textures are compressed to, if anything")
+        ->default_str(kUsualStorage + std::string("; with auto, the best"))
         ->check(CLI::IsMember(gpu_storages()));
-    app.add_option("--quality", options->quality, "Of block compression")->check(CLI::IsMember(names_of(kQualities)));
+    app.add_option("--quality", options->quality, "How hard block compression searches")
+        ->default_str("medium")
+        ->check(CLI::IsMember(names_of(kQualities)));
     app.add_option("--max-bytes", options->max_bytes, "With auto: at most so many bytes per texel")
+        ->default_str("any")
         ->check(between(0.1, 1000.0));
-    app.add_flag("--table", options->table, "Print the error and the cost of every encoding as CSV");
+    app.add_flag("--table", options->table,
+                 "Instead of writing: print the error and the cost of every encoding as CSV");
     app.add_option("--plot", options->plot, "With --table: a PNG of error over bytes")->check(not_empty());
     app.add_option("--table-texels", options->table_texels, "Texels that auto and --table measure")
+        ->default_str(std::to_string(kTableTexels))
         ->check(CLI::Range(1u, 10000000u));
-    app.add_option("-o,--output", options->output, "Folder to write to, if not DIR")->check(not_empty());
+    app.add_option("-o,--output", options->output, "Folder to write to")->default_str("DIR")->check(not_empty());
     app.add_option("--threads", options->threads, "0: one per core")->check(CLI::Range(0u, 1024u));
     declare_progress(app, options->progress);
     return [options] {

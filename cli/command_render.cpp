@@ -91,17 +91,16 @@ Status write_picture(const std::string& path, const Image& image, double exposur
     return write_png(path, image.width, image.height, 3, tonemap(image, factor));
 }
 
-// The light that lit the bake, where the command line has no other.
-Status take_light_of_bake(const Options& options, const LightRecord& bake, BakeOptions& light) {
+// The light that lit the bake, where the command line has no other. Returns what was taken, as it would be given.
+Result<std::string> take_light_of_bake(const Options& options, const LightRecord& bake, BakeOptions& light) {
     const bool own_sky = !light.sky.file.empty();
-    const std::string taken = options.light.take_over(bake, light);
+    std::string taken = options.light.take_over(bake, light);
     std::error_code ignored;
     if (!own_sky && !light.sky.file.empty() && !std::filesystem::exists(light.sky.file, ignored))
         return Error{ErrorCode::io, "the sky map that lit the bake is not there any more", light.sky.file,
                      "say where it is with --sky FILE and the bake's other options of light, which its manifest.json "
                      "has, or go without by --sky 0,0,0"};
-    if (!taken.empty()) std::fprintf(stderr, "lumel: lit as the bake was: %s\n", taken.c_str());
-    return success();
+    return taken;
 }
 
 // What is seen of the sky, and what has no texels, is not lit by the bake's files.
@@ -125,20 +124,27 @@ Status run(const Options& options) {
     LUMEL_TRY(const Size size, parse_size(options.resolution, "--resolution"));
     LUMEL_TRY_STATUS(check_output(options.output));
     std::optional<LightRecord> bake;
+    std::string taken;
     if (!options.baked.empty()) {
         LUMEL_TRY(bake, read_light_record(options.baked));
-        LUMEL_TRY_STATUS(take_light_of_bake(options, *bake, light));
+        LUMEL_TRY(taken, take_light_of_bake(options, *bake, light));
     }
     RunContext run_context(light.threads, options.progress);
     Context& context = run_context.get();
     run_context.interrupt().set_cleaner([&options] { remove_temporaries(options.output); });
     LUMEL_TRY(const LoadedScene loaded, load_lit_scene(options.scene, light, context));
     const Scene& scene = loaded.scene;
-    if (bake) warn_of_other_light(*bake, loaded, light, context.diagnostics);
     LUMEL_TRY(const WorldGeometry geometry, flatten(scene, context));
+    std::optional<BakedLighting> baked;
+    if (bake) {
+        // Of another scene nothing more is to be said of its light.
+        LUMEL_TRY(baked, read_baked(options.baked, scene, geometry));
+        if (!taken.empty()) std::fprintf(stderr, "lumel: lit as the bake was: %s\n", taken.c_str());
+        warn_of_other_light(*bake, loaded, light, context.diagnostics);
+    }
     const SurfaceReader surfaces(scene, geometry);
     const LightSet lights(scene, geometry, surfaces);
-    if (lights.empty() && options.baked.empty())
+    if (lights.empty() && !baked)
         return Error{ErrorCode::invalid_input, "the scene has no light, no emissive surface and no sky", scene.source,
                      "give it a sky, for example --sky 1,1,1, or a sun with --sun-direction"};
     LUMEL_TRY(const std::unique_ptr<Tracer> tracer, make_embree_tracer(geometry, surfaces, context));
@@ -150,14 +156,10 @@ Status run(const Options& options) {
     picture.width = size.width;
     picture.height = size.height;
     picture.samples = light.samples ? light.samples : kUsualSamples;
-    Image image;
-    if (options.baked.empty()) {
-        LUMEL_TRY(image, render_picture(transport, path, camera, picture, nullptr, context));
-    } else {
-        LUMEL_TRY(BakedLighting baked, read_baked(options.baked, scene, geometry));
-        const BakedLight baked_light = light_of(baked);
-        LUMEL_TRY(image, render_picture(transport, path, camera, picture, &baked_light, context));
-    }
+    std::optional<BakedLight> baked_light;
+    if (baked) baked_light = light_of(*baked);
+    LUMEL_TRY(const Image image,
+              render_picture(transport, path, camera, picture, baked_light ? &*baked_light : nullptr, context));
     LUMEL_TRY_STATUS(write_picture(options.output, image, options.exposure));
     run_context.finish();
     std::printf("%s\n", options.output.c_str());
@@ -171,9 +173,12 @@ Run add_render(CLI::App& app) {
     app.add_option("SCENE", options->scene, "glTF scene: .glb or .gltf")->required();
     app.add_option("-o,--output", options->output, "Picture: .png (tone-mapped), .exr, .hdr or .pfm (radiance)")
         ->required();
-    app.add_option("--camera", options->camera, "Name of a camera, 'view K', or eye;target;vfov_degrees")
+    app.add_option(
+           "--camera", options->camera,
+           "Name of a camera, 'view K', or eye;target;vfov_degrees (default: the scene's first camera, else view 0)")
         ->check(not_empty());
-    app.add_option("--baked", options->baked, "Output folder of a bake of this scene: light the view by it")
+    app.add_option("--baked", options->baked,
+                   "Output folder of a bake of this scene: light the view by it (default: path-traced)")
         ->check(not_empty());
     app.add_option("--resolution", options->resolution, "Width x height in pixels")->check(not_empty());
     app.add_option("--exposure", options->exposure, "Factor for .png; 0: automatic")->check(not_negative());

@@ -158,6 +158,7 @@ void LightOptions::declare(CLI::App& app, const std::string& usual_samples) {
         return option;
     };
     of_sky_and_sun(app.add_option("--sky", sky_, "Sky: radiance R,G,B, or an equirectangular .hdr or .exr file"))
+        ->default_str("the sidecar's, or none")
         ->check(not_empty());
     of_sky_and_sun(app.add_option("--sky-intensity", values_.sky.intensity, "Times the sky: nits per unit"))
         ->check(not_negative());
@@ -171,6 +172,7 @@ void LightOptions::declare(CLI::App& app, const std::string& usual_samples) {
                                 "Find the sun's disc in the map and make it a light"));
     CLI::Option* const sun =
         of_sky_and_sun(app.add_option("--sun-direction", sun_direction_, "X,Y,Z: the way the sun's light travels")
+                           ->default_str("no sun")
                            ->check(not_empty()));
     of_sky_and_sun(app.add_option("--sun-illuminance", values_.sun.illuminance, "Lux on a plane facing the sun"))
         ->check(not_negative())

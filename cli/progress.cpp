@@ -111,7 +111,8 @@ private:
 
 void declare_progress(CLI::App& app, std::string& style) {
     style = "auto";
-    app.add_option("--progress", style, "auto, plain, json or none")
+    app.add_option("--progress", style,
+                   "auto: a bar on a terminal, else plain; plain: lines of text; json: an object a line; none")
         ->check(CLI::IsMember({"auto", "plain", "json", "none"}));
 }
 

@@ -22,7 +22,10 @@ void TexelOptions::declare(CLI::App& app) {
     app.add_option("--texels-per-metre", values_.texels_per_metre, "Density (0: from the preset's texel budget)")
         ->check(between(0.0, 1e6))
         ->group(group);
-    app.add_option("--resolution", resolution_, "WxH of the one page")->check(not_empty())->group(group);
+    app.add_option("--resolution", resolution_, "WxH of the one page")
+        ->default_str("pages as large as the density asks")
+        ->check(not_empty())
+        ->group(group);
     app.add_option("--max-page", values_.max_page, "Largest page edge in texels")
         ->check(CLI::Range(64u, 16384u))
         ->group(group);
@@ -35,6 +38,7 @@ void TexelOptions::declare(CLI::App& app) {
     app.add_option(
            "--atlas", atlas_,
            "manifest.json or atlas.json whose layout to keep: charts that are still the same stay where they were")
+        ->default_str("a new layout")
         ->check(not_empty())
         ->group(group);
     filter_option_ = app.add_option("--filter", filter_, "How lightmaps are looked up: bilinear or bicubic")

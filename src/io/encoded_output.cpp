@@ -1,5 +1,6 @@
 #include "io/encoded_output.h"
 
+#include <algorithm>
 #include <span>
 #include <utility>
 
@@ -111,8 +112,21 @@ std::string EncodedOutput::json() const {
     return out.dump(2) + "\n";
 }
 
+EncodedOutput::Files EncodedOutput::files() const {
+    Files out{encoded_stem(encoding_->name) + ".json", {}};
+    for (std::size_t p = 0; p < pages_.size(); ++p) {
+        if (!textures_) {
+            out.pages.push_back(encoded_page_file(encoding_->name, static_cast<std::uint32_t>(p)));
+            continue;
+        }
+        for (const TexturePages::Place& place : textures_->places(p))
+            if (std::ranges::find(out.pages, place.file) == out.pages.end()) out.pages.push_back(place.file);
+    }
+    return out;
+}
+
 Status EncodedOutput::commit(const MasterList& source) {
-    const std::string name = encoded_stem(encoding_->name) + ".json", text = json();
+    const std::string name = files().description, text = json();
     const Status written = write_file(partial() / name, std::as_bytes(std::span(text)));
     if (!written.ok()) return files_.in_place(written.error());
     return files_.commit([&] { return check_unchanged(source); });

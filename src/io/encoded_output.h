@@ -36,6 +36,13 @@ public:
     // masters were listed. Precondition: all layers of the target are there.
     Status commit(const MasterList& source);
 
+    // The JSON and, in order, the pages or textures, each once.
+    struct Files {
+        std::string description;
+        std::vector<std::string> pages;
+    };
+    [[nodiscard]] Files files() const;
+
 private:
     struct Page {
         std::uint32_t width, height;

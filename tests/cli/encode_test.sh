@@ -8,6 +8,8 @@ expect 0 '' bake ok.gltf -o lit "${quick[@]}" --progress none
 
 expect 0 '' encode lit --encoding irradz-hhd
 [ -s lit/encoded_irradz-hhd_0.exr ] || complain 'no page'
+printf 'description: lit/encoded_irradz-hhd.json\nlight: lit/encoded_irradz-hhd_0.exr\n' | cmp -s - out.txt ||
+    complain "the files are not named: $(cat out.txt)"
 grep -q '"frame": "tangent"' lit/encoded_irradz-hhd.json || complain 'the frame is not stated'
 expect 0 '' encode lit --encoding l1-hhd -o elsewhere
 [ -s elsewhere/encoded_l1-hhd_0.exr ] || complain 'no page elsewhere'
@@ -33,6 +35,7 @@ grep -q '^hlsh,rgb9e5' out.txt && complain 'rgb9e5 holds no negative light'
 expect 0 '' encode lit --encoding irradz-hhd --format ktx2
 [ -s lit/encoded_irradz-hhd_w-d.ktx2 ] || complain 'no texture'
 [ -e lit/encoded_irradz-hhd_0.exr ] && complain 'the EXR file is left'
+grep -qx 'light: lit/encoded_irradz-hhd_w-d.ktx2' out.txt || complain "the texture is not named: $(cat out.txt)"
 grep -q '"vk_format": 143' lit/encoded_irradz-hhd.json || complain 'no vkFormat'
 expect 0 '' encode lit --encoding irradz-hhd --format dds --storage bc45 --quality best --threads 2
 [ "$(compgen -G 'lit/encoded_irradz-hhd_*.dds' | wc -l)" = 3 ] || complain 'not three textures'
@@ -61,7 +64,9 @@ expect 2 '--max-bytes needs' encode lit --encoding l2 --max-bytes 4
 expect 2 '--table prints' encode lit --table -o elsewhere
 expect 2 '--table prints' encode lit --table --format exr
 expect 2 '--table-texels needs' encode lit --encoding l2 --table-texels 50
-expect 1 'nowhere' encode nowhere --encoding l2
+expect 1 'nowhere: there is no such folder' encode nowhere --encoding l2
+mkdir notes
+expect 1 'notes: is no bake of lumel: it has no manifest.json (give the folder that' encode notes --encoding l2
 compgen -G 'lit/.lumel-*' >/dev/null && complain "left $(echo lit/.lumel-*)"
 
 # The encoded files are of this bake: they go when another takes its place, and those elsewhere stay.

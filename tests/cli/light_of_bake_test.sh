@@ -31,6 +31,15 @@ expect 0 '[other-light, 1]' render ok.gltf -o other.pfm --baked lit "${view[@]}"
 silent --sun-direction
 differ other.pfm taken.pfm
 
+# Of the light of another scene nothing is said.
+sed 's/"translation":\[0,2,0\]/"translation":[0,3,0]/; s/"mesh":0,/"mesh":0,"scale":[2,1,1],/' ok.gltf >wide.gltf
+expect 1 'was baked from another scene than wide.gltf' render wide.gltf -o wide.pfm --baked lit "${view[@]}"
+silent other-light
+silent 'lit as'
+mkdir notes
+expect 1 'notes: is no bake of lumel' render ok.gltf -o notes.pfm --baked notes "${view[@]}"
+expect 1 'lit/lightmap_0.exr' compare lit lit
+
 # A sky map, from its folder, from another, after both were moved, changed, gone.
 mkdir maps
 expect 0 '' render ok.gltf -o maps/sky.hdr --samples 16 --resolution 32x16 --sky 1,1,1 --camera '0,3,3;0,0,0;90'
