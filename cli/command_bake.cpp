@@ -135,6 +135,9 @@ void print_reached(const BakeReport& report, const BakeOptions& options) {
                 100.0 * report.share_within_error, options.error, options.confidence,
                 static_cast<double>(report.samples) / static_cast<double>(std::max<std::uint64_t>(1, report.texels)),
                 report.samples_per_texel);
+    const double rest = 1.0 - report.share_within_error - report.share_unlit - report.share_out_of_samples;
+    std::printf("of the others %.1f %% took all samples, %.1f %% are black, %.1f %% stopped sooner\n",
+                100.0 * report.share_out_of_samples, 100.0 * report.share_unlit, 100.0 * std::max(0.0, rest));
 }
 
 void print_collapsed(const BakeReport& report) {
@@ -143,7 +146,7 @@ void print_collapsed(const BakeReport& report) {
                 static_cast<unsigned long long>(report.charts));
 }
 
-void print_summary(const BakeReport& report, const std::string& folder) {
+void print_summary(const BakeReport& report, const std::string& folder, bool is_denoised) {
     std::printf("%s: %llu texels on %zu page%s, %llu charts", folder.c_str(),
                 static_cast<unsigned long long>(report.texels), report.pages.size(),
                 report.pages.size() == 1 ? "" : "s", static_cast<unsigned long long>(report.charts));
@@ -158,7 +161,8 @@ void print_summary(const BakeReport& report, const std::string& folder) {
                     : 0.0,
                 report.tracer.c_str());
     if (std::isfinite(report.estimated_nrmse))
-        std::printf("estimated nRMSE %.4f; ", report.estimated_nrmse);
+        std::printf("estimated nRMSE %.4f%s (noise over light: unseen at 0.01, plain at 0.1); ", report.estimated_nrmse,
+                    is_denoised ? " before denoising" : "");
     else
         std::printf("nRMSE unknown from single paths; ");
     if (std::isfinite(report.cell_bias) && std::isfinite(report.cell_bias_error))
@@ -195,7 +199,7 @@ Status run(const Options& options) {
     if (!run_context.interrupt().begin_commit()) return cancelled_error();
     LUMEL_TRY_STATUS(writer.commit());
     run_context.finish();
-    print_summary(report, options.output);
+    print_summary(report, options.output, bake_options.denoise.value_or(preset_values(bake_options.preset).denoise));
     if (bake_options.atlas) print_kept(kept, report.charts, *bake_options.atlas);
     if (bake_options.collapse > 0.0) print_collapsed(report);
     print_reached(report, bake_options);

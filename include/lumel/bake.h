@@ -55,6 +55,9 @@ struct BakeReport {
     // Share of texels that are not black and whose interval at options.confidence, as traced, is within options.error
     // of their irradiance (luminance). NaN where nothing was to be reached.
     double share_within_error = 0.0;
+    // Of the others: those that no light has reached, and those of the rest that took all samples. What is left stopped
+    // by what the texels around it have measured (StopRule::error). NaN where nothing was to be reached.
+    double share_unlit = 0.0, share_out_of_samples = 0.0;
     double mean_irradiance[3] = {0, 0, 0};  // I = E/pi over baked texels
     // Where charts meet on one surface; 0 with options.seams off. Hidden: something stands there.
     double seam_metres = 0.0;

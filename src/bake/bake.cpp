@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "bake/chart_options.h"
+#include "bake/inside_out.h"
 #include "bake/memory.h"
 #include "bake/page_output.h"
 #include "bake/sample_plan.h"
@@ -107,7 +108,9 @@ struct Totals {
     double relative_error = 0.0;  // of a texel's mean that is to be reached; 0: none
     double variance = 0.0, irradiance[3] = {0, 0, 0};
     std::uint64_t texels = 0, measured = 0;  // measured: of more than one path, so that they have a variance
-    std::uint64_t within = 0;                // of these, at relative_error
+    std::uint32_t most_samples = 0;          // of a texel
+    // At relative_error; of the others, which no light has reached, and which of the rest took all samples.
+    std::uint64_t within = 0, unlit = 0, exhausted = 0;
 
     void add(const Lightmap& map, const std::array<bool, kLayerCount>& included) {
         for (std::size_t i = 0; i < map.texels.size(); ++i) {
@@ -123,20 +126,27 @@ struct Totals {
                 irradiance[c] += static_cast<double>(mean[c]);
             }
             // Channels err together, for it is the same light that they have met or missed.
-            within +=
-                map.texels.count[i] > 1 && max_component(mean) > 0.0f &&
-                        static_cast<double>(luminance(error)) <= relative_error * static_cast<double>(luminance(mean))
-                    ? 1
-                    : 0;
+            const bool is_unlit = !(max_component(mean) > 0.0f);
+            const bool is_within =
+                map.texels.count[i] > 1 && !is_unlit &&
+                static_cast<double>(luminance(error)) <= relative_error * static_cast<double>(luminance(mean));
+            within += is_within ? 1 : 0;
+            unlit += is_unlit ? 1 : 0;
+            exhausted += !is_within && !is_unlit && map.texels.traced[i] >= most_samples ? 1 : 0;
         }
     }
     [[nodiscard]] bool is_black() const { return irradiance[0] + irradiance[1] + irradiance[2] == 0.0; }
 
     void store(BakeReport& report) const {
-        report.share_within_error = std::numeric_limits<double>::quiet_NaN();
+        report.share_within_error = report.share_unlit = report.share_out_of_samples =
+            std::numeric_limits<double>::quiet_NaN();
         if (texels == 0) return;
-        if (relative_error > 0.0) report.share_within_error = static_cast<double>(within) / static_cast<double>(texels);
         const double n = static_cast<double>(texels);
+        if (relative_error > 0.0) {
+            report.share_within_error = static_cast<double>(within) / n;
+            report.share_unlit = static_cast<double>(unlit) / n;
+            report.share_out_of_samples = static_cast<double>(exhausted) / n;
+        }
         double mean = 0.0;
         for (std::size_t c = 0; c < 3; ++c) {
             report.mean_irradiance[c] = irradiance[c] / n;
@@ -211,7 +221,8 @@ struct PageBaker {
 };
 
 // Progress of each stage is that over all pages. `kept`: where pages go instead of being written.
-Status bake_pages(const PageBaker& baker, const PageOutput& output, Totals& totals, std::vector<Lightmap>* kept) {
+Status bake_pages(const PageBaker& baker, const PageOutput& output, Totals& totals, InsideOutCheck& inside_out,
+                  std::vector<Lightmap>* kept) {
     const auto work = [](const AtlasPage& page) {
         return static_cast<double>(std::uint64_t{page.width} * page.height);
     };
@@ -223,6 +234,7 @@ Status bake_pages(const PageBaker& baker, const PageOutput& output, Totals& tota
         progress.begin(work(baker.atlas.pages[page]));
         LUMEL_TRY(Lightmap map, baker.bake(page, by_page[page]));
         totals.add(map, baker.path.included);
+        inside_out.add(map);
         if (kept)
             kept->push_back(std::move(map));
         else
@@ -361,6 +373,7 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
     }
     Totals totals;
     if (options.stop != StopRule::fixed) totals.relative_error = path.relative_error_of_mean;
+    totals.most_samples = path.samples;
     CellBias bias;
     std::optional<SeamBlender> seams;
     if (options.seams) {
@@ -370,8 +383,10 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
                           context};
     std::vector<Lightmap> kept;
     const PageOutput output{scene, geometry, charts, options, sink, report, context};
-    LUMEL_TRY_STATUS(bake_pages(baker, output, totals, collapses ? &kept : nullptr));
+    InsideOutCheck inside_out(atlas);
+    LUMEL_TRY_STATUS(bake_pages(baker, output, totals, inside_out, collapses ? &kept : nullptr));
     seams.reset();
+    inside_out.warn({scene, geometry, surfaces, lights, *tracer}, context.diagnostics);
     if (collapses) LUMEL_TRY_STATUS(output.write_collapsed(kept, atlas));
     kept.clear();
     kept.shrink_to_fit();

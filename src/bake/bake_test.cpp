@@ -172,6 +172,7 @@ TEST(Bake, TheSameBitsForTexelsThatStopAtAnError) {
     EXPECT_LT(report.samples, report.texels * 1024) << "no texel stopped early";
     EXPECT_GT(report.share_within_error, 0.5);
     EXPECT_LE(report.share_within_error, 1.0);
+    EXPECT_LE(report.share_within_error + report.share_unlit + report.share_out_of_samples, 1.0 + 1e-12);
     options.stop = StopRule::fixed;
     options.samples = 64;
     bake_hash(1, options, &report);
@@ -370,6 +371,54 @@ TEST(Bake, WarnsWhereNoLightReachesAnyTexel) {
 
 BakeSink no_sink() {
     return {[](const auto&, const auto&, const auto&) { return success(); }, [](const auto&) { return success(); }};
+}
+
+// A floor half of which is behind a wall of its own height, and blocked from above: half its texels are black, and no
+// number of samples changes that. The other half converges.
+TEST(Bake, TellsWhyTexelsAreNotWithinTheError) {
+    test::SceneBuilder b;
+    const auto white = b.material({0.8f, 0.8f, 0.8f});
+    b.object("floor", white, [](Mesh& m) { test::add_quad(m, {0, 0, 0}, {0, 0, 1}, {1, 0, 0}); });
+    b.object(
+        "cover", b.material({0, 0, 0}),
+        [](Mesh& m) {
+            test::add_box(m, {-9, -1, -9}, {0.5f, 1, 9}, true);
+        },
+        {}, NodeClass::occluder);
+    b.light(LightShape::point).position = {2.0f, 1.0f, 0.5f};
+    BakeOptions options = small_options();
+    options.texels_per_metre = 32;
+    options.samples = 256;
+    options.stop = StopRule::error;
+    options.error = 0.2;
+    Context context(1);
+    const Result<BakeReport> report = bake(b.build(), options, no_sink(), context);
+    ASSERT_TRUE(report.ok());
+    EXPECT_NEAR(report->share_unlit, 0.5, 2.0 / 32.0);  // the texels at the foot of the wall are either
+    EXPECT_NEAR(report->share_within_error, 0.5, 3.0 / 32.0);
+    EXPECT_LE(report->share_out_of_samples, 2.0 / 32.0);
+}
+
+// A room with a lamp in it and a crate on its floor, its walls facing in, and out.
+TEST(Bake, NamesNodesThatAreInsideOut) {
+    for (const bool inward : {true, false}) {
+        test::SceneBuilder b;
+        const auto white = b.material({0.8f, 0.8f, 0.8f});
+        b.object("walls", white, [&](Mesh& m) { test::add_box(m, {0, 0, 0}, {2, 2, 2}, inward); });
+        b.object("crate", white, [](Mesh& m) { test::add_box(m, {0.5f, 0.3f, 0.5f}, {1, 0.8f, 1}, false); });
+        b.light(LightShape::point).position = {1.5f, 1.5f, 1.5f};
+        Context context(2);
+        ASSERT_TRUE(bake(b.build(), small_options(), no_sink(), context).ok());
+        const auto names = [&](const char* code) {
+            std::vector<std::string> out;
+            for (const Diagnostic& d : context.diagnostics.all())
+                if (d.code == code) out.insert(out.end(), d.examples.begin(), d.examples.end());
+            return out;
+        };
+        using Names = std::vector<std::string>;
+        EXPECT_EQ(names("inside-out"), inward ? Names{} : Names{"walls"});
+        EXPECT_EQ(names("backs-seen"), inward ? Names{} : Names{"crate"});
+    }
 }
 
 // The megabytes that an error says are needed; 0 where it says none.

@@ -223,6 +223,8 @@ Json report_json(const ManifestInput& in, const Diagnostics& diagnostics) {
                     {"samples", report.seam_samples},
                     {"hidden_samples", report.hidden_seam_samples}};
     out["share_within_error"] = number(report.share_within_error);
+    out["share_unlit"] = number(report.share_unlit);
+    out["share_out_of_samples"] = number(report.share_out_of_samples);
     out["mean_irradiance"] = report.mean_irradiance;
     out["warnings"] = warnings_json(diagnostics);
     return out;
