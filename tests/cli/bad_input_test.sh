@@ -150,7 +150,7 @@ expect 2 "camera 'nowhere'" render ok.gltf -o v.png --camera nowhere
 expect 2 'same point' render ok.gltf -o v.png --camera '0,0,0;0,0,0;60'
 expect 2 .bmp render ok.gltf -o v.bmp
 expect 1 'its folder does not exist' render ok.gltf -o gone/v.png
-expect 1 gone/manifest.json render ok.gltf -o v.png --baked gone
+expect 1 'gone: there is no such folder' render ok.gltf -o v.png --baked gone
 
 expect 1 'no such file' bake gone.glb -o out "${quick[@]}"
 expect 1 'is a folder' bake . -o out "${quick[@]}"
