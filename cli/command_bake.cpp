@@ -113,7 +113,8 @@ std::uint64_t memory_for_views(const BakeOptions& options, const BakeReport& rep
     if (options.max_memory_bytes == 0) return 0;
     std::uint64_t most = 0;
     for (const PageReport& page : report.pages)
-        most = std::max(most, page_memory({page.width, page.height}, options.mips.value_or(0), report.threads));
+        most = std::max(
+            most, page_memory({page.width, page.height}, options.mips.value_or(0), options.seams, report.threads));
     return most;
 }
 

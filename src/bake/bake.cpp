@@ -34,6 +34,7 @@
 #include "post/lightmap.h"
 #include "scene/world_geometry.h"
 #include "seam/blend_seams.h"
+#include "seam/border_edges.h"
 #include "texel/texel_buffer.h"
 #include "trace/tracer.h"
 
@@ -60,15 +61,18 @@ PathOptions path_options(const BakeOptions& options, const WorldGeometry& geomet
 constexpr std::uint32_t kSmallestPage = 256;
 
 // The largest page edge, of halves of `edge`, whose full page would fit; at least the smallest.
-std::uint32_t edge_that_fits(std::uint32_t edge, std::uint32_t mips, std::uint64_t memory, unsigned threads) {
-    while (edge > kSmallestPage && page_memory({edge, edge}, mips, threads) > memory) edge /= 2;
+std::uint32_t edge_that_fits(std::uint32_t edge, std::uint32_t mips, bool seams, std::uint64_t memory,
+                             unsigned threads) {
+    while (edge > kSmallestPage && page_memory({edge, edge}, mips, seams, threads) > memory) edge /= 2;
     return std::max(edge, kSmallestPage);
 }
 
 // Packs the charts so that everything fits the memory allowed. Pages shrink by halves.
 Result<Atlas> make_atlas_within_memory(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts,
-                                       ChartOptions options, std::uint32_t cell_samples, bool collapses,
+                                       ChartOptions options, std::uint32_t cell_samples, bool seams, bool collapses,
                                        std::uint64_t max_memory, BakeReport& report, Context& context) {
+    std::optional<std::uint64_t> border_edges;
+    if (seams) border_edges = count_border_edges(scene, charts);
     const bool one_page = charts.scene_wide || options.resolution_width != 0, is_kept = options.previous != nullptr;
     const Diagnostics before = context.diagnostics;
     for (;;) {
@@ -80,7 +84,8 @@ Result<Atlas> make_atlas_within_memory(const Scene& scene, const WorldGeometry& 
             return error;
         }
         LUMEL_TRY(Atlas atlas, std::move(made));
-        report.predicted_memory_bytes = bake_memory(scene, geometry, atlas, cell_samples, collapses, context.threads());
+        report.predicted_memory_bytes =
+            bake_memory(scene, geometry, atlas, {cell_samples, border_edges, collapses}, context.threads());
         if (max_memory == 0 || report.predicted_memory_bytes <= max_memory) return atlas;
         if (one_page || is_kept || options.max_page <= kSmallestPage) break;
         std::uint64_t kept = scene_memory(scene, geometry, atlas);
@@ -89,8 +94,9 @@ Result<Atlas> make_atlas_within_memory(const Scene& scene, const WorldGeometry& 
             if (kept + cells.cells + cells.links > max_memory) break;  // which no smaller page would help
             kept += cells.cells;
         }
+        if (seams) kept += seam_memory(*border_edges, atlas).samples;
         const std::uint64_t left = max_memory > kept ? max_memory - kept : 0;
-        options.max_page = edge_that_fits(options.max_page / 2, options.masks.mips, left, context.threads());
+        options.max_page = edge_that_fits(options.max_page / 2, options.masks.mips, seams, left, context.threads());
     }
     std::string remedy = is_kept
                              ? "raise --max-memory, or leave out --atlas: pages of a layout that is kept stay as large"
@@ -327,7 +333,8 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
         const Diagnostics before = context.diagnostics;
         const auto lay_out = [&] {
             return make_atlas_within_memory(scene, geometry, charts, chart_options(options), cell_samples,
-                                            options.collapse > 0.0, options.max_memory_bytes, report, context);
+                                            options.seams, options.collapse > 0.0, options.max_memory_bytes, report,
+                                            context);
         };
         Result<Atlas> laid_out = lay_out();
         if (!laid_out.ok() && laid_out.error().code == ErrorCode::out_of_memory && cell_samples > 0 &&

@@ -7,6 +7,7 @@
 #include "light/emissive.h"
 #include "path/light_cells.h"
 #include "path/radiance_sums.h"
+#include "seam/seam_samples.h"
 
 namespace lumel {
 namespace {
@@ -30,13 +31,21 @@ constexpr std::uint64_t kTexelBufferBytes = 4 + 8 + 4 + 2 * sizeof(Vec3) + 4 + 4
 constexpr std::uint64_t kLightmapBytes = 3 * sizeof(Vec3) + 2 + 4 + 15 * sizeof(float);
 // Of a thread: a block of texels with their points and sums, a wavefront of paths.
 constexpr std::uint64_t kWorkspaceBytes = 1u << 20;
-// Seams, of a texel of the page. Measured at 0.25 M texels, most of them rims: 0.06 to 0.09 samples for each texel
-// (city, Sponza, Doom map) and 0.07 texels at seams (city); twice these is assumed of the latter. A sample takes 36
-// bytes, its equation 80 and its residuals 32 on each of four threads; a texel at a seam 360 as it was, and four times
-// 32 on each of four threads. None of the texel buffer's workspace is in use then.
-constexpr double kSeamSamplesPerTexel = 0.1, kSeamTexelsPerTexel = 0.15;
-constexpr auto kSeamBytes =
-    static_cast<std::uint64_t>(kSeamSamplesPerTexel * (36 + 80 + 4 * 32) + kSeamTexelsPerTexel * (360 + 4 * 128));
+// Seams. Measured at 0.25 M texels, most of them rims: 0.06 to 0.09 samples for each texel (city, Sponza, Doom map) and
+// 0.07 texels at seams (city); twice these is assumed of the latter. Where texels are few, each seam still has a
+// sample.
+constexpr double kSeamSamplesPerTexel = 0.1, kSeamTexelsPerTexel = 0.15, kSeamSamplesPerEdge = 0.5;
+// Of a texel of the page while its seams are solved for: the equation of a sample takes 80 bytes, twice while the list
+// grows, and its residuals 32 on each of up to four threads; a texel at a seam takes 360 as it was, 36 of weights, and
+// four times 32 on each of four threads; each texel its place among them. None of the texel buffer's workspace is in
+// use then.
+constexpr auto kSeamBytes = static_cast<std::uint64_t>(kSeamSamplesPerTexel * (2 * 80 + 4 * 32) +
+                                                       kSeamTexelsPerTexel * (360 + 36 + 4 * 128) + 4);
+// Of an edge while seams are looked for: itself, twice while the list grows, its line, its box and node, and what it is
+// found to be a seam with, in parts and in one list.
+constexpr std::uint64_t kBytesPerBorderEdge = 2 * sizeof(BorderEdge) + 56 + 24 + 4 + 36 + 2 * sizeof(Seam);
+// Of a sample for later pages: what the earlier one showed.
+constexpr std::uint64_t kRememberedBytes = kLayerCount * sizeof(LayerMoments) + sizeof(std::uint32_t);
 constexpr std::uint64_t kBytesPerPixel = 3 * sizeof(std::uint32_t);  // texel_at of both, readers
 
 // Rows of the master, the widest file, on one thread: as they were filled, as OpenEXR packs them, room to sort the
@@ -134,13 +143,13 @@ std::uint64_t scene_memory(const Scene& scene, const WorldGeometry& geometry, co
     return bytes;
 }
 
-std::uint64_t page_memory(const AtlasPage& page, std::uint32_t mips, unsigned threads) {
+std::uint64_t page_memory(const AtlasPage& page, std::uint32_t mips, bool seams, unsigned threads) {
     const std::uint64_t texels = pixels_of(page);
     const std::uint64_t mip = mips == 0 ? 0 : texels / 4 * (kSumsBytes + kLightmapBytes + kBytesPerPixel);
     const std::uint64_t rows =
         std::uint64_t{kExrRowsPerChunk} * threads * page.width * kMasterPixelBytes * kCopiesOfRows;
     // The texel buffer is gone when the files are written, and so is what each thread traces with.
-    return texels * (kSumsBytes + kLightmapBytes + kSeamBytes + kBytesPerPixel) +
+    return texels * (kSumsBytes + kLightmapBytes + (seams ? kSeamBytes : 0) + kBytesPerPixel) +
            std::max(texels * kTexelBufferBytes + threads * kWorkspaceBytes, mip + rows);
 }
 
@@ -162,16 +171,29 @@ CellMemory cell_memory(const WorldGeometry& geometry, const Atlas& atlas, std::u
                 cells * (links_per_cell(cells) * sizeof(CellLink) + sizeof(CellGather) + 2 * sizeof(Vec3))};
 }
 
+SeamMemory seam_memory(std::uint64_t border_edges, const Atlas& atlas) {
+    std::uint64_t pixels = 0;
+    for (const AtlasPage& page : atlas.pages) pixels += pixels_of(page);
+    const auto samples = static_cast<std::uint64_t>(kSeamSamplesPerTexel * static_cast<double>(pixels) +
+                                                    kSeamSamplesPerEdge * static_cast<double>(border_edges));
+    // Once more in parts, or while they are sorted.
+    return {samples * (sizeof(SeamSample) + (atlas.pages.size() > 1 ? kRememberedBytes : 0)),
+            border_edges * kBytesPerBorderEdge + samples * sizeof(SeamSample)};
+}
+
 std::uint64_t bake_memory(const Scene& scene, const WorldGeometry& geometry, const Atlas& atlas,
-                          std::uint32_t cell_samples, bool keeps_pages, unsigned threads) {
+                          const MemoryPlan& plan, unsigned threads) {
+    const bool with_seams = plan.border_edges.has_value();
     std::uint64_t page = 0, kept = 0;
-    for (const AtlasPage& p : atlas.pages) page = std::max(page, page_memory(p, atlas.masks.mips, threads));
+    for (const AtlasPage& p : atlas.pages) page = std::max(page, page_memory(p, atlas.masks.mips, with_seams, threads));
     CellMemory cells;
-    if (cell_samples > 0) cells = cell_memory(geometry, atlas, cell_samples);
-    if (keeps_pages)
+    if (plan.cell_samples > 0) cells = cell_memory(geometry, atlas, plan.cell_samples);
+    if (plan.keeps_pages)
         for (const AtlasPage& p : atlas.pages) kept += pixels_of(p) * (kSumsBytes + kLightmapBytes + kBytesPerPixel);
+    SeamMemory seams;
+    if (with_seams) seams = seam_memory(*plan.border_edges, atlas);
     return kept + scene_memory(scene, geometry, atlas) + preview_memory(atlas) + picture_memory(atlas) + cells.cells +
-           std::max({page, cells.links, output_memory(scene, atlas)});
+           std::max({seams.samples + page, seams.samples + seams.finding, cells.links, output_memory(scene, atlas)});
 }
 
 }  // namespace lumel

@@ -33,6 +33,26 @@ TEST(Memory, EmissiveTrianglesAreLights) {
     EXPECT_EQ(scene_memory(bright, bright_world, {}) - scene_memory(dark, dark_world, {}), light_memory(bright_world));
 }
 
+// Bakes that leave seams as they are pay nothing for them; others for the page, for later pages, and for the search.
+TEST(Memory, SeamsAreForBakesThatMakeThemEqual) {
+    Context context(1);
+    const Scene scene = field(10, {});
+    const WorldGeometry geometry = flatten(scene, context).value();
+    Atlas atlas;
+    atlas.first_placement = {0, 0};
+    atlas.pages = {{512, 512}};
+    const std::uint64_t off = bake_memory(scene, geometry, atlas, {}, 1);
+    const std::uint64_t on = bake_memory(scene, geometry, atlas, {0, 1000, false}, 1);
+    const std::uint64_t solving = page_memory({512, 512}, 0, true, 1) - page_memory({512, 512}, 0, false, 1);
+    EXPECT_GT(solving, 512u * 512u * 100u);
+    EXPECT_EQ(on - off, solving + seam_memory(1000, atlas).samples);
+    // Millions of edges take more than the page.
+    EXPECT_GT(bake_memory(scene, geometry, atlas, {0, 10'000'000, false}, 1) - off, 10'000'000u * 250u);
+    const std::uint64_t one_page = seam_memory(1000, atlas).samples;
+    atlas.pages.push_back({512, 512});
+    EXPECT_GT(seam_memory(1000, atlas).samples, 4 * one_page) << "what a page showed is remembered for later ones";
+}
+
 // What is said to be needed is near what is: not less, and not twice as much.
 TEST(Memory, TheTracerTakesWhatIsPredicted) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)

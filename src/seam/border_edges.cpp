@@ -74,4 +74,14 @@ std::vector<BorderEdge> find_border_edges(const Scene& scene, const WorldGeometr
     return out;
 }
 
+std::uint64_t count_border_edges(const Scene& scene, const ChartSet& charts) {
+    std::vector<std::uint64_t> instances(charts.meshes.size());
+    for (std::uint32_t i = 0; i < scene.instances.size(); ++i)
+        if (charts.gets_texels(scene, i)) ++instances[scene.instances[i].mesh];
+    std::uint64_t count = 0;
+    for (std::size_t m = 0; m < instances.size(); ++m)
+        if (instances[m] > 0) count += instances[m] * border_of(charts.meshes[m]).size();
+    return count;
+}
+
 }  // namespace lumel

@@ -22,4 +22,8 @@ struct BorderEdge {
 std::vector<BorderEdge> find_border_edges(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts,
                                           const Atlas& atlas);
 
+// How many there are, or a few more: edges of no length, and of charts that were not placed, count too. For what they
+// will take of memory, before there is an atlas.
+std::uint64_t count_border_edges(const Scene& scene, const ChartSet& charts);
+
 }  // namespace lumel

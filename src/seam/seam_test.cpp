@@ -88,6 +88,14 @@ double metres_of(const std::vector<BorderEdge>& edges, const std::vector<Seam>& 
     return sum;
 }
 
+TEST(BorderEdges, AreAsManyAsWereCounted) {
+    for (const bool wall : {false, true}) {
+        const Layout layout(tiles(wall));
+        ASSERT_GE(layout.edges.size(), 12u);
+        EXPECT_EQ(count_border_edges(layout.traced.scene, layout.charts), layout.edges.size());
+    }
+}
+
 TEST(FindSeams, FindsEdgesOfInstancesAndTJunctions) {
     Layout layout(tiles());
     const auto seams = find_seams(layout.edges, {}, layout.context).value();
@@ -168,6 +176,40 @@ TEST(BlendSeams, NeverLeavesNegativeLight) {
             EXPECT_GE(layer.irradiance.x, 0.0f);
             EXPECT_GE(layer.sh[0].x, 0.0f);
         }
+}
+
+// |R1| <= R0 in the coefficients: l1^2 + l2^2 + l3^2 <= 3 l0^2. All light is from one direction, but for every other
+// texel of one tile, whose is from the opposite, as bright: lookups on its edges show none of the two, and to show what
+// the other side does, its other texels would have to go beyond. Nothing but this rule holds them back.
+TEST(BlendSeams, NeverLeavesVectorsLongerThanTheLight) {
+    const float rim = std::sqrt(3.0f);
+    for (const float width : {0.96f, 0.97f, 0.98f, 0.99f, 1.0f}) {
+        Layout layout(tiles(false, 0.0f, width));
+        Lightmap map = layout.page(0);
+        for (std::size_t pixel = 0; pixel < map.texel_at.size(); ++pixel) {
+            const std::uint32_t i = map.texel_at[pixel];
+            if (i == kNone) continue;
+            const bool opposite = map.chart[i] == 0 && (pixel % map.width + pixel / map.width) % 2 == 1;
+            for (LayerMoments& layer : map.texels.layers[i]) {
+                layer = {};
+                layer.irradiance = layer.sh[0] = {1, 1, 1};
+                layer.sh[2] = Vec3{rim, rim, rim} * (opposite ? -1.0f : 1.0f);
+            }
+        }
+        const Lightmap before = map;
+        ASSERT_TRUE(SeamBlender(layout.samples().samples, layout.atlas, {}).blend(map, layout.context).ok());
+        std::size_t moved = 0;
+        for (std::size_t i = 0; i < map.texels.size(); ++i)
+            for (std::size_t l = 0; l < kLayerCount; ++l) {
+                const LayerMoments& layer = map.texels.layers[i][l];
+                moved += layer.sh[2] == before.texels.layers[i][l].sh[2] ? 0 : 1;
+                double squares = 0.0;
+                for (const std::size_t k : {1u, 2u, 3u}) squares += double{layer.sh[k].x} * double{layer.sh[k].x};
+                const double l0 = double{layer.sh[0].x};
+                ASSERT_LE(squares, 3.0 * l0 * l0 * 1.0002) << width;  // rounding of vectors on the rim
+            }
+        EXPECT_GT(moved, 100u);
+    }
 }
 
 TEST(BlendSeams, LaterPagesAdaptToEarlierOnes) {
