@@ -2,30 +2,13 @@
 
 #include <array>
 #include <map>
-#include <numeric>
 #include <tuple>
 
+#include "base/union_find.h"
 #include "light/emissive.h"
 #include "math/discrete.h"
 
 namespace lumel::bench {
-namespace {
-
-// Which emitters share a corner, over any number of steps: union-find.
-class Groups {
-public:
-    explicit Groups(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), std::size_t{0}); }
-    std::size_t find(std::size_t i) {
-        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-        return i;
-    }
-    void join(std::size_t a, std::size_t b) { parent_[std::max(find(a), find(b))] = std::min(find(a), find(b)); }
-
-private:
-    std::vector<std::size_t> parent_;
-};
-
-}  // namespace
 
 FluxLights::FluxLights(const Scene& scene, const WorldGeometry& geometry, SurfaceReader surfaces)
     : geometry_(&geometry), surfaces_(surfaces) {
@@ -48,14 +31,14 @@ void FluxLights::add_emissive_objects() {
     for (std::uint32_t t = 0; t < geometry_->triangle_count(); ++t)
         if (is_emitter(geometry_->triangles[t]) && geometry_->area(t) > 0.0f) emitters.push_back(t);
 
-    Groups groups(emitters.size());
-    std::map<std::tuple<float, float, float>, std::size_t> first_at;  // corner to the first emitter that has it
-    for (std::size_t i = 0; i < emitters.size(); ++i)
+    UnionFind groups(emitters.size());  // that share a corner, over any number of steps
+    std::map<std::tuple<float, float, float>, std::uint32_t> first_at;  // corner to the first emitter that has it
+    for (std::uint32_t i = 0; i < emitters.size(); ++i)
         for (const Vec3 corner : geometry_->corners(emitters[i]))
-            groups.join(i, first_at.emplace(std::tuple(corner.x, corner.y, corner.z), i).first->second);
+            groups.unite(i, first_at.emplace(std::tuple(corner.x, corner.y, corner.z), i).first->second);
 
-    std::map<std::size_t, EmissiveObject> objects;
-    for (std::size_t i = 0; i < emitters.size(); ++i) objects[groups.find(i)].triangles.push_back(emitters[i]);
+    std::map<std::uint32_t, EmissiveObject> objects;
+    for (std::uint32_t i = 0; i < emitters.size(); ++i) objects[groups.find(i)].triangles.push_back(emitters[i]);
     for (auto& [group, object] : objects) {
         std::vector<double> areas;
         for (const std::uint32_t t : object.triangles) areas.push_back(static_cast<double>(geometry_->area(t)));

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <queue>
 #include <tuple>
@@ -182,25 +181,18 @@ private:
         };
         std::vector<End> ends;
         for (std::uint32_t i = 0; i < edges.size(); ++i) {
-            edges[i].run = i;
             const std::uint32_t e = edges[i].moved_edge;
             ends.push_back({all_.topology_.point[corner_vertex(all_.mesh_, e)], i});
             ends.push_back({all_.topology_.point[corner_vertex(all_.mesh_, next_edge(e))], i});
         }
         std::sort(ends.begin(), ends.end(),
                   [](const End& x, const End& y) { return std::tie(x.point, x.edge) < std::tie(y.point, y.edge); });
-        const auto find = [&](std::uint32_t i) {
-            while (edges[i].run != i) i = edges[i].run = edges[edges[i].run].run;
-            return i;
-        };
-        for (std::size_t i = 1; i < ends.size(); ++i) {
-            if (ends[i].point != ends[i - 1].point) continue;
-            const std::uint32_t x = find(ends[i].edge), y = find(ends[i - 1].edge);
-            edges[std::max(x, y)].run = std::min(x, y);
-        }
+        UnionFind runs(edges.size());
+        for (std::size_t i = 1; i < ends.size(); ++i)
+            if (ends[i].point == ends[i - 1].point) runs.unite(ends[i].edge, ends[i - 1].edge);
         std::vector<double> length(edges.size(), 0.0);
         std::uint32_t longest = 0;
-        for (std::uint32_t i = 0; i < edges.size(); ++i) length[edges[i].run = find(i)] += edges[i].length;
+        for (std::uint32_t i = 0; i < edges.size(); ++i) length[edges[i].run = runs.find(i)] += edges[i].length;
         for (std::uint32_t i = 0; i < edges.size(); ++i)
             if (length[i] > length[longest]) longest = i;
         return longest;
@@ -267,7 +259,7 @@ private:
         keep.chart = std::move(joined);
         gone.chart = {};
         ++keep.version, ++gone.version;
-        all_.parent_[b] = a;
+        all_.sets_.absorb(a, b);
         keep.borders.erase(b);
         for (const auto& [other, border] : gone.borders) {
             if (other == a) continue;
@@ -295,13 +287,12 @@ ChartJoiner::ChartJoiner(const Mesh& mesh, const MeshTopology& topology, std::ve
       options_(options),
       pieces_(charts.size()),
       piece_of_triangle_(topology.triangle_count(), kNone),
-      parent_(charts.size()),
+      sets_(charts.size()),
       component_of_(charts.size()) {
     for (std::uint32_t p = 0; p < charts.size(); ++p) {
         for (const std::uint32_t t : charts[p].triangles) piece_of_triangle_[t] = p;
         pieces_[p].chart = std::move(charts[p]);
     }
-    std::iota(parent_.begin(), parent_.end(), 0u);
     add_borders();
     find_components();
 }
@@ -350,10 +341,7 @@ void ChartJoiner::run(std::size_t component, const std::function<bool()>& cancel
     if (components_[component].size() > 1) ComponentJoiner(*this, components_[component]).run(cancelled);
 }
 
-std::uint32_t ChartJoiner::find(std::uint32_t piece) {
-    while (parent_[piece] != piece) piece = parent_[piece] = parent_[parent_[piece]];
-    return piece;
-}
+std::uint32_t ChartJoiner::find(std::uint32_t piece) { return sets_.find(piece); }
 
 std::vector<FlatChart> ChartJoiner::take() {
     std::vector<FlatChart> out;

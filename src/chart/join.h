@@ -13,6 +13,7 @@
 #include <map>
 #include <vector>
 
+#include "base/union_find.h"
 #include "chart/crease.h"
 #include "chart/flatten.h"
 #include "chart/topology.h"
@@ -65,7 +66,7 @@ private:
     const JoinOptions options_;
     std::vector<Piece> pieces_;
     std::vector<std::uint32_t> piece_of_triangle_;  // before anything was joined, or kNone
-    std::vector<std::uint32_t> parent_;             // union-find over pieces
+    UnionFind sets_;                                // of pieces that are one chart
     std::vector<std::uint32_t> component_of_;       // of pieces
     std::vector<std::vector<std::uint32_t>> components_;
 };

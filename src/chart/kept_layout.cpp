@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <string>
 #include <utility>
 
+#include "base/union_find.h"
 #include "chart/atlas_record.h"
 #include "chart/chart_mask.h"
 #include "chart/mesh_charts.h"
@@ -151,24 +151,18 @@ void merge_contacts(const Scene& scene, const std::vector<ChartContact>& contact
     std::vector<std::uint32_t> first(charts.meshes.size() + 1, 0);  // charts of all meshes in one row
     for (std::size_t m = 0; m < charts.meshes.size(); ++m)
         first[m + 1] = first[m] + static_cast<std::uint32_t>(charts.meshes[m].charts.size());
-    std::vector<std::uint32_t> root(first.back());
-    std::iota(root.begin(), root.end(), 0u);
-    const auto find = [&](std::uint32_t c) {
-        while (root[c] != c) c = root[c] = root[root[c]];
-        return c;
-    };
+    UnionFind united(first.back());
     for (const ChartContact& contact : contacts) {
         if (contact.a.instance != contact.b.instance) continue;
         const std::uint32_t base = first[scene.instances[contact.a.instance].mesh];
-        const std::uint32_t a = find(base + contact.a.chart), b = find(base + contact.b.chart);
-        root[std::max(a, b)] = std::min(a, b);
+        united.unite(base + contact.a.chart, base + contact.b.chart);
     }
     for (std::size_t m = 0; m < charts.meshes.size(); ++m) {
         MeshCharts& mesh = charts.meshes[m];
         std::vector<std::uint32_t> number(mesh.charts.size(), kNone);
         std::uint32_t count = 0;
         for (std::uint32_t c = 0; c < mesh.charts.size(); ++c) {
-            const std::uint32_t r = find(first[m] + c) - first[m];
+            const std::uint32_t r = united.find(first[m] + c) - first[m];
             number[c] = r == c ? count++ : number[r];
         }
         if (count == mesh.charts.size()) continue;

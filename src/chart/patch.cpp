@@ -2,7 +2,8 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <numeric>
+
+#include "base/union_find.h"
 
 namespace lumel {
 namespace {
@@ -58,31 +59,22 @@ bool is_planar(const MeshTopology& topology, const std::vector<std::uint32_t>& t
 
 Patch make_patch(const Mesh& mesh, const MeshTopology& topology, const std::vector<std::uint32_t>& triangles,
                  const std::vector<std::uint32_t>& cuts) {
-    std::vector<std::uint32_t> root(3 * triangles.size());
-    std::iota(root.begin(), root.end(), 0u);
-    const auto find = [&](std::uint32_t c) {
-        while (root[c] != c) c = root[c] = root[root[c]];
-        return c;
-    };
-    const auto unite = [&](std::uint32_t a, std::uint32_t b) {
-        a = find(a), b = find(b);
-        root[std::max(a, b)] = std::min(a, b);
-    };
+    UnionFind corners(3 * triangles.size());
     for (std::uint32_t i = 0; i < triangles.size(); ++i) {
         for (std::uint32_t k = 0; k < 3; ++k) {
             const std::uint32_t twin = topology.twin[3 * triangles[i] + k];
             if (twin == kNone || std::binary_search(cuts.begin(), cuts.end(), 3 * triangles[i] + k)) continue;
             const std::uint32_t j = index_in(triangles, twin / 3);
             if (j == kNone) continue;
-            unite(3 * i + k, next_edge(3 * j + twin % 3));
-            unite(next_edge(3 * i + k), 3 * j + twin % 3);
+            corners.unite(3 * i + k, next_edge(3 * j + twin % 3));
+            corners.unite(next_edge(3 * i + k), 3 * j + twin % 3);
         }
     }
     Patch patch;
-    std::vector<std::uint32_t> number(root.size(), kNone);
+    std::vector<std::uint32_t> number(3 * triangles.size(), kNone);
     patch.triangles.resize(triangles.size());
-    for (std::uint32_t c = 0; c < root.size(); ++c) {
-        std::uint32_t& n = number[find(c)];
+    for (std::uint32_t c = 0; c < number.size(); ++c) {
+        std::uint32_t& n = number[corners.find(c)];
         if (n == kNone) {
             n = static_cast<std::uint32_t>(patch.positions.size());
             patch.positions.push_back(to_double(mesh.positions[mesh.triangles[triangles[c / 3]][c % 3]]));

@@ -8,6 +8,7 @@
 #include <queue>
 #include <tuple>
 
+#include "base/union_find.h"
 #include "chart/crease.h"
 #include "chart/normal_cone.h"
 
@@ -77,8 +78,7 @@ class Merger {
 public:
     Merger(const Mesh& mesh, const MeshTopology& topology, const SegmentOptions& options,
            const std::vector<std::uint32_t>& region, std::uint32_t region_count)
-        : options_(options), clusters_(region_count), parent_(region_count) {
-        std::iota(parent_.begin(), parent_.end(), 0u);
+        : options_(options), clusters_(region_count), sets_(region_count) {
         add_triangles(topology, region);
         add_borders(mesh, topology, region);
     }
@@ -95,10 +95,7 @@ public:
         }
     }
 
-    std::uint32_t find(std::uint32_t c) {
-        while (parent_[c] != c) c = parent_[c] = parent_[parent_[c]];
-        return c;
-    }
+    std::uint32_t find(std::uint32_t c) { return sets_.find(c); }
 
 private:
     void add_triangles(const MeshTopology& topology, const std::vector<std::uint32_t>& region) {
@@ -159,7 +156,7 @@ private:
         keep.cone = *cone_union(keep.cone, gone.cone);
         keep.normal_sum += gone.normal_sum;
         ++keep.version;
-        parent_[b] = a;
+        sets_.absorb(a, b);
         keep.borders.erase(b);
         for (const auto& [other, border] : gone.borders)
             if (other != a) move_border(b, a, other, border);
@@ -182,7 +179,7 @@ private:
 
     const SegmentOptions& options_;
     std::vector<Cluster> clusters_;
-    std::vector<std::uint32_t> parent_;
+    UnionFind sets_;
     std::priority_queue<Candidate> queue_;
     std::uint32_t last_ticket_ = 0;
 };

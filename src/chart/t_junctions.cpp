@@ -8,6 +8,7 @@
 #include <optional>
 #include <tuple>
 
+#include "base/union_find.h"
 #include "chart/patch.h"
 
 namespace lumel {
@@ -169,8 +170,7 @@ namespace {
 class FlatUnion {
 public:
     FlatUnion(const MeshTopology& topology, const std::vector<std::vector<std::uint32_t>>& clusters)
-        : root_(clusters.size()) {
-        std::iota(root_.begin(), root_.end(), 0u);
+        : sets_(clusters.size()) {
         for (const auto& cluster : clusters) {
             double area = 0.0, deviation = 0.0;
             const Eigen::Vector3d normal = mean_normal(topology, cluster);
@@ -184,10 +184,7 @@ public:
         }
     }
 
-    std::uint32_t find(std::uint32_t c) {
-        while (root_[c] != c) c = root_[c] = root_[root_[c]];
-        return c;
-    }
+    std::uint32_t find(std::uint32_t c) { return sets_.find(c); }
 
     // Unites the clusters, and what they are of, where all of it is flat then.
     void unite(std::uint32_t a, std::uint32_t b) {
@@ -198,7 +195,7 @@ public:
         const double deviation = std::max((whole_[x].normal.normalized() - mean).norm() + whole_[x].deviation,
                                           (whole_[y].normal.normalized() - mean).norm() + whole_[y].deviation);
         if (deviation * deviation > 2.0 - 2.0 * kPlanarCos) return;
-        root_[y] = x;
+        sets_.absorb(x, y);
         whole_[x] = {sum, deviation};
     }
 
@@ -207,7 +204,7 @@ private:
         Eigen::Vector3d normal;  // times the area
         double deviation;        // at most, of a triangle's normal
     };
-    std::vector<std::uint32_t> root_;
+    UnionFind sets_;
     std::vector<Eigen::Vector3d> normal_;  // of the clusters
     std::vector<bool> flat_;
     std::vector<Whole> whole_;  // of what is united, by its root

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <tuple>
 
+#include "base/union_find.h"
 #include "chart/mesh_charts.h"
 
 namespace lumel {
@@ -15,23 +15,6 @@ constexpr double kFloor = 0x1p-20;          // rounding of coordinates in [0, 1]
 constexpr double kMaxCollapsedArea = 1e-3;  // share of the surface that may have no area in UV: slivers, not faces
 
 bool inside(Vec2 p) { return p.x >= -kBorder && p.y >= -kBorder && p.x <= 1.0f + kBorder && p.y <= 1.0f + kBorder; }
-
-// Triangles with the same corner belong together.
-class Islands {
-public:
-    explicit Islands(std::size_t triangles) : root_(triangles) { std::iota(root_.begin(), root_.end(), 0u); }
-    std::uint32_t find(std::uint32_t t) {
-        while (root_[t] != t) t = root_[t] = root_[root_[t]];
-        return t;
-    }
-    void unite(std::uint32_t a, std::uint32_t b) {
-        a = find(a), b = find(b);
-        root_[std::max(a, b)] = std::min(a, b);
-    }
-
-private:
-    std::vector<std::uint32_t> root_;
-};
 
 // In UV and in space.
 struct Corner {
@@ -105,7 +88,7 @@ double uv1_scale(const Mesh& mesh, const std::vector<double>& areas) {
 }
 
 MeshCharts uv1_islands(const Mesh& mesh, const std::vector<double>& areas, float scale) {
-    Islands islands(areas.size());
+    UnionFind islands(areas.size());  // triangles with the same corner
     std::vector<Corner> corners;
     for (std::uint32_t t = 0; t < areas.size(); ++t) {
         if (areas[t] == 0.0) continue;
