@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "encode/encodings.h"
+#include "encode/is_light.h"
 #include "math/half.h"
 
 namespace lumel {
@@ -42,8 +43,6 @@ float stored(FieldKind kind, Storage storage, float value) {
     return round_to_half(value);
 }
 
-bool is_light(const Field& field) { return field.kind == FieldKind::light || field.kind == FieldKind::signed_light; }
-
 }  // namespace
 
 std::span<const Encoding* const> list_encodings() { return kEncodings; }
@@ -62,7 +61,7 @@ std::size_t bytes_per_texel(const Encoding& encoding, Storage storage) {
     const std::size_t numbers = encoding.fields.size();
     if (storage == Storage::exact) return 4 * numbers;
     if (storage == Storage::half) return 2 * numbers;
-    const auto lights = static_cast<std::size_t>(std::ranges::count_if(encoding.fields, is_light));
+    const auto lights = static_cast<std::size_t>(std::ranges::count_if(encoding.fields, is_light, &Field::kind));
     return (lights + 2) / 3 * 6 + (numbers - lights + 3) / 4 * 4;
 }
 

@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "math/trig.h"
 
 namespace lumel {
 namespace {
 
-constexpr double kPiDouble = 3.14159265358979323846;
+constexpr double kPiDouble = std::numbers::pi;
 
 struct Rule {
     std::vector<double> x, w;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "encode/hemisphere_fit.h"
 
@@ -47,7 +48,7 @@ Sums compare(const Encoding& encoding, const Numbers& numbers, const std::vector
         out.error += grid.weight[k] * squared(encoding.decode(numbers, grid.normal[k]) - truth[k]);
         out.truth += grid.weight[k] * sum(truth[k]);
     }
-    constexpr double kArea = 3 * 6.283185307179586;  // three channels
+    constexpr double kArea = 3 * 2 * std::numbers::pi;  // three channels
     out.error = or_infinity(out.error / kArea);
     out.truth /= kArea;
     return out;

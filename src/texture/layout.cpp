@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "encode/is_light.h"
+
 namespace lumel {
 namespace {
 
@@ -25,8 +27,6 @@ constexpr std::array kStorages{
     row("logluv", F::logluv, F::logluv, false, kBytes, true),
     row("rgbe", F::rgbe, F::rgbe, false, kBytes, true),
 };
-
-bool is_light(FieldKind kind) { return kind == FieldKind::light || kind == FieldKind::signed_light; }
 
 std::string_view stem(const Field& field) {
     const std::string_view name = field.name;

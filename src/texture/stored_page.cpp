@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "base/try.h"
+#include "encode/is_light.h"
 #include "encode/light_range.h"
 #include "encode/units.h"
 #include "lumel/scene.h"
@@ -16,8 +17,6 @@ namespace {
 std::span<const Field> fields_of(const Encoding& encoding, const StoredTexture& texture) {
     return encoding.fields.subspan(texture.first, texture.count);
 }
-
-bool is_light(FieldKind kind) { return kind == FieldKind::light || kind == FieldKind::signed_light; }
 
 float scale_of(const Encoding& encoding, const StoredTexture& texture, const EncodedPage& page) {
     const float largest = format_info(texture.format).largest;
