@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <vector>
 
 #include "light/light_sample.h"
@@ -68,7 +69,7 @@ struct SolidAngles {
     explicit SolidAngles(const SkyMap& map) : sines(row_edge_sines(map.height)), width(map.width) {}
     [[nodiscard]] double operator()(std::size_t pixel) const {
         const std::size_t row = pixel / width;
-        return (sines[row] - sines[row + 1]) * 6.283185307179586476925 / width;
+        return (sines[row] - sines[row + 1]) * (2.0 * std::numbers::pi) / width;
     }
     std::vector<double> sines;
     std::uint32_t width;
@@ -109,7 +110,7 @@ Light make_sun(const Pixels& pixels, const Region& region, Vec3 background, cons
     sun.shape = LightShape::sun;
     sun.direction = -normalize(vector(direction));
     sun.intensity = vector(irradiance);
-    sun.angular_diameter = static_cast<float>(2.0 * arccosine(1.0 - disc / 6.283185307179586476925));
+    sun.angular_diameter = static_cast<float>(2.0 * arccosine(1.0 - disc / (2.0 * std::numbers::pi)));
     return sun;
 }
 

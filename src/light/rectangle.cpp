@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "math/constants.h"
 #include "math/trig.h"
@@ -12,7 +13,7 @@ namespace {
 // Steradians. Below it the directions hardly differ, and sampling by area has the same noise with fewer operations that
 // cancel.
 constexpr double kSmallSolidAngle = 1e-4;
-constexpr double kTwoPiDouble = 6.283185307179586476925;
+constexpr double kTwoPiDouble = 2.0 * std::numbers::pi;
 
 // Cosine of an edge plane's normal to the rectangle's normal, for an edge at signed distance a from the foot point.
 double edge_cosine(double a, double height) { return a / std::sqrt(a * a + height * height); }

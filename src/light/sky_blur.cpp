@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -13,7 +14,7 @@
 namespace lumel {
 namespace {
 
-constexpr double kPiDouble = 3.14159265358979323846;
+constexpr double kPiDouble = std::numbers::pi;
 
 // Rows of sub-samples of a source row, so that a cap of few rows still has a round edge.
 constexpr double kRowsPerCap = 16.0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "math/constants.h"
 #include "math/trig.h"
@@ -42,7 +43,7 @@ Vec3 lookup(const SkyMap& map, Vec3 direction) { return lookup(map, sky_coordina
 std::vector<double> row_edge_sines(std::uint32_t height) {
     std::vector<double> sines(height + 1);
     for (std::uint32_t y = 0; y <= height; ++y)
-        sines[y] = sincos_radians(1.57079632679489661923 * (1.0 - 2.0 * y / height)).sine;
+        sines[y] = sincos_radians(0.5 * std::numbers::pi * (1.0 - 2.0 * y / height)).sine;
     return sines;
 }
 
@@ -50,7 +51,7 @@ std::array<double, 3> integrate(const SkyMap& map) {
     const std::vector<double> sines = row_edge_sines(map.height);
     std::array<double, 3> total{};
     for (std::uint32_t y = 0; y < map.height; ++y) {
-        const double solid_angle = (sines[y] - sines[y + 1]) * 6.283185307179586476925 / map.width;
+        const double solid_angle = (sines[y] - sines[y + 1]) * (2.0 * std::numbers::pi) / map.width;
         std::array<double, 3> row{};
         for (std::uint32_t x = 0; x < map.width; ++x) {
             const Vec3 c = map.radiance[std::size_t{y} * map.width + x];

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <span>
 
 #include "light/light_sample.h"
@@ -57,7 +58,7 @@ SkySampler::Sample SkySampler::sample(Vec2 u) const {
     const double sine = edge_sines_[row.index] + row.fraction * (edge_sines_[row.index + 1] - edge_sines_[row.index]);
     const double cosine = std::sqrt(std::max(0.0, (1.0 - sine) * (1.0 + sine)));
     const double map_u = (static_cast<double>(pixel.index) + pixel.fraction) / width_;
-    const SinCosDouble azimuth = sincos_radians((map_u - 0.5) * 6.283185307179586476925);
+    const SinCosDouble azimuth = sincos_radians((map_u - 0.5) * (2.0 * std::numbers::pi));
     return {{static_cast<float>(cosine * azimuth.cosine), static_cast<float>(sine),
              static_cast<float>(cosine * azimuth.sine)},
             pdf_of_pixel(row.index, row.units, pixel.units)};

@@ -1,6 +1,7 @@
 #include "light/sun.h"
 
 #include <algorithm>
+#include <numbers>
 
 #include "math/constants.h"
 #include "math/warp.h"
@@ -9,7 +10,7 @@ namespace lumel {
 
 SunLight::SunLight(const Light& light) : frame_(-light.direction), irradiance_(light.intensity) {
     if (light.angular_diameter <= 0.0f) return;
-    const double half = std::min(0.5 * static_cast<double>(light.angular_diameter), 1.5707963267948966);
+    const double half = std::min(0.5 * static_cast<double>(light.angular_diameter), 0.5 * std::numbers::pi);
     const double sine = sincos_radians(half).sine, half_sine = sincos_radians(0.5 * half).sine;
     one_minus_cos_ = static_cast<float>(2.0 * half_sine * half_sine);
     sine_squared_ = static_cast<float>(sine * sine);
