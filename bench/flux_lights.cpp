@@ -31,7 +31,7 @@ void FluxLights::add_emissive_objects() {
     for (std::uint32_t t = 0; t < geometry_->triangle_count(); ++t)
         if (is_emitter(geometry_->triangles[t]) && geometry_->area(t) > 0.0f) emitters.push_back(t);
 
-    UnionFind groups(emitters.size());  // that share a corner, over any number of steps
+    UnionFind groups(emitters.size());                                  // that share a corner, over any number of steps
     std::map<std::tuple<float, float, float>, std::uint32_t> first_at;  // corner to the first emitter that has it
     for (std::uint32_t i = 0; i < emitters.size(); ++i)
         for (const Vec3 corner : geometry_->corners(emitters[i]))

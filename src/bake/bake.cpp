@@ -138,7 +138,7 @@ struct Totals {
                 static_cast<double>(luminance(error)) <= relative_error * static_cast<double>(luminance(mean));
             within += is_within ? 1 : 0;
             unlit += is_unlit ? 1 : 0;
-            exhausted += !is_within && !is_unlit && map.texels.traced[i] >= most_samples ? 1 : 0;
+            exhausted += !is_within && !is_unlit && map.texels.count[i] >= most_samples ? 1 : 0;
         }
     }
     [[nodiscard]] bool is_black() const { return irradiance[0] + irradiance[1] + irradiance[2] == 0.0; }

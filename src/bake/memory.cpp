@@ -181,8 +181,8 @@ SeamMemory seam_memory(std::uint64_t border_edges, const Atlas& atlas) {
             border_edges * kBytesPerBorderEdge + samples * sizeof(SeamSample)};
 }
 
-std::uint64_t bake_memory(const Scene& scene, const WorldGeometry& geometry, const Atlas& atlas,
-                          const MemoryPlan& plan, unsigned threads) {
+std::uint64_t bake_memory(const Scene& scene, const WorldGeometry& geometry, const Atlas& atlas, const MemoryPlan& plan,
+                          unsigned threads) {
     const bool with_seams = plan.border_edges.has_value();
     std::uint64_t page = 0, kept = 0;
     for (const AtlasPage& p : atlas.pages) page = std::max(page, page_memory(p, atlas.masks.mips, with_seams, threads));

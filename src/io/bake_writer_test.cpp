@@ -332,6 +332,7 @@ struct Baked {
         report.stages = {{"trace", 1.5, 2.5}};
         report.pages = {{0, 8, 8, 40, 2, 1, 3, 0.5}};
         report.tracer = "none";
+        report.cell_bias = -0.002;  // it has a sign
         report.rays_per_second = std::numeric_limits<double>::infinity();
         loaded.context.diagnostics.add("some-code", "A message.", "somewhere \"quoted\"");
         LUMEL_TRY_STATUS(writer->finish(report, loaded.context.diagnostics));
