@@ -5,6 +5,7 @@
 #include <string_view>
 #include <utility>
 
+#include "io/image_io.h"
 #include "load.h"
 #include "lumel/bake.h"
 
@@ -26,12 +27,8 @@ bool emits(const Scene& scene) {
            std::ranges::any_of(scene.materials, [](const Material& m) { return max_component(m.emission) > 0.0f; });
 }
 
-BakeOptions light_of_the_benchmarks(const std::string& sky_map) {
+BakeOptions light_of_the_benchmarks() {
     BakeOptions light;
-    if (!sky_map.empty()) {
-        light.sky.file = sky_map;
-        return light;
-    }
     light.sky.color = Vec3{0.7f, 0.9f, 1.3f};
     light.sun.direction = Vec3{0.4188f, -0.7614f, -0.4949f};
     light.sun.color = {14.0f, 12.5f, 10.0f};
@@ -49,8 +46,10 @@ Scene load_lit(const std::string& path, Context& context, const std::string& sky
     if (known != std::end(kKnownSkies)) {
         scene.sky = {};
         scene.sky.color = known->radiance;
+    } else if (!emits(scene) && !sky_map.empty()) {
+        scene.sky.map = need(read_sky(sky_map));
     } else if (!emits(scene)) {
-        need(apply_lighting(scene, light_of_the_benchmarks(sky_map)));
+        need(apply_lighting(scene, light_of_the_benchmarks()));
     }
     return std::move(scene);
 }
