@@ -14,11 +14,16 @@
 #include <string>
 #include <vector>
 
+#include "source_tree.h"
+
 namespace fs = std::filesystem;
 
 namespace {
 
-const fs::path kRoot = LUMEL_SOURCE_DIR;
+using lumel::test::lines_of;
+using lumel::test::sources_below;
+
+const fs::path kRoot = lumel::test::kSourceTree;
 
 struct ForeignHeader {
     std::string header;              // glob over what stands between < and >
@@ -71,25 +76,6 @@ Layers project_layers() {
     std::ifstream stream(kRoot / "src/LAYERS");
     if (!stream) throw std::runtime_error("no src/LAYERS");
     return parse_layers(stream);
-}
-
-// Files below `root` with one of the extensions, in a fixed order.
-std::vector<fs::path> sources_below(const fs::path& root) {
-    std::vector<fs::path> out;
-    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root)) {
-        const std::string extension = entry.path().extension().string();
-        if (extension == ".h" || extension == ".cpp" || extension == ".inl" || extension == ".c")
-            out.push_back(entry.path());
-    }
-    std::sort(out.begin(), out.end());
-    return out;
-}
-
-std::vector<std::string> lines_of(const fs::path& path) {
-    std::ifstream stream(path);
-    std::vector<std::string> out;
-    for (std::string line; std::getline(stream, line);) out.push_back(line);
-    return out;
 }
 
 std::vector<Include> includes_of(const std::vector<std::string>& lines, const std::string& file) {
