@@ -1,7 +1,11 @@
-# Sourced, from the root of the checkout, by the scripts that bake real scenes: finds `data`, the folder of the scenes, and
-# `lumel`, the program, which it builds first unless LUMEL_BUILD names another build folder; sets `daylight`.
+# Sourced, from the root of the checkout, by the scripts that bake real scenes: finds `data`, the folder of the scenes, where
+# there is none of which the script ends well, and `lumel`, the program, which it builds first unless LUMEL_BUILD names another build folder; sets `daylight`.
 # shellcheck shell=bash disable=SC2034
 data=$(realpath -m "${LUMEL_DATA:-../shared/data}/scenes")
+if [ ! -d "$data" ]; then
+    echo "$0: there is no $data: nothing is measured (set LUMEL_DATA)" >&2
+    exit 0
+fi
 build=${LUMEL_BUILD:-build/release}
 if [ "$build" = build/release ]; then
     scripts/bootstrap
