@@ -13,6 +13,7 @@
 #include "base/try.h"
 #include "chart/atlas_record.h"
 #include "chart/bad_charts.h"
+#include "chart/charts_of_uv1.h"
 #include "chart/kept_layout.h"
 #include "chart/mesh_charts.h"
 #include "chart/topology.h"
@@ -69,16 +70,28 @@ public:
     }
 
     Result<ChartSet> run() {
-        if (!build_topologies()) return cancelled_error();
-        LUMEL_TRY(const bool kept, keep_scene_wide());
-        if (kept) return std::move(charts_);
-        std::vector<std::uint32_t> own;
-        if (!keep_mesh_layouts(own) || !unwrap(own)) return cancelled_error();
+        LUMEL_TRY(const std::vector<std::uint32_t> own, keep_uv1());
+        if (charts_.scene_wide) return std::move(charts_);
+        if (!unwrap(own)) return cancelled_error();
         demote_bad_charts(scene_, options_, charts_, context_.diagnostics);
         return std::move(charts_);
     }
 
+    Result<ChartSet> run_uv1_alone() {
+        LUMEL_TRY_STATUS(keep_uv1());
+        return std::move(charts_);
+    }
+
 private:
+    // The meshes that get charts of our own.
+    Result<std::vector<std::uint32_t>> keep_uv1() {
+        if (!build_topologies()) return cancelled_error();
+        LUMEL_TRY(const bool kept, keep_scene_wide());
+        std::vector<std::uint32_t> own;
+        if (!kept && !keep_mesh_layouts(own)) return cancelled_error();
+        return own;
+    }
+
     [[nodiscard]] const Mesh& mesh(std::uint32_t m) const { return *scene_.meshes[m]; }
 
     bool build_topologies() {
@@ -281,6 +294,11 @@ private:
 Result<ChartSet> make_charts(const Scene& scene, const WorldGeometry& geometry, const ChartOptions& options,
                              Context& context) {
     return ChartMaker(scene, geometry, options, context).run();
+}
+
+Result<ChartSet> charts_of_uv1(const Scene& scene, const WorldGeometry& geometry, const ChartOptions& options,
+                               Context& context) {
+    return ChartMaker(scene, geometry, options, context).run_uv1_alone();
 }
 
 }  // namespace lumel

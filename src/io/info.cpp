@@ -24,23 +24,31 @@ struct Emitter {
 struct Summary {
     std::uint64_t instances = 0, triangles = 0, texels = 0;
     std::array<std::uint64_t, 5> classes{};  // by NodeClass
-    std::size_t with_uv0 = 0, with_uv1 = 0, uv1_in_unit_square = 0, with_colors = 0;
+    std::size_t with_uv0 = 0, with_uv1 = 0, with_colors = 0;
+    // Of the meshes with TEXCOORD_1: kept, as one atlas of the scene or packed anew; rejected; of no lightmap instance.
+    std::size_t uv1_kept = 0, uv1_rejected = 0, uv1_unused = 0;
+    bool uv1_is_atlas = false;
     std::vector<Emitter> emitters;  // per material
     Vec3 low{}, high{};
 };
-
-bool in_unit_square(const std::vector<Vec2>& uvs) {
-    return std::all_of(uvs.begin(), uvs.end(),
-                       [](Vec2 uv) { return uv.x >= 0.0f && uv.x <= 1.0f && uv.y >= 0.0f && uv.y <= 1.0f; });
-}
 
 void count_meshes(const Scene& scene, Summary& out) {
     for (const auto& mesh : scene.meshes) {
         out.with_uv0 += !mesh->uv0.empty();
         out.with_uv1 += !mesh->uv1.empty();
         out.with_colors += !mesh->colors.empty();
-        out.uv1_in_unit_square += !mesh->uv1.empty() && in_unit_square(mesh->uv1);
     }
+}
+
+void count_uv1(const Scene& scene, const ChartSet& uv1, Summary& out) {
+    std::vector<bool> used(scene.meshes.size());
+    for (const Instance& instance : scene.instances)
+        if (instance.node_class == NodeClass::lightmap) used[instance.mesh] = true;
+    for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+        if (scene.meshes[m]->uv1.empty()) continue;
+        ++(!used[m] ? out.uv1_unused : uv1.meshes[m].from_uv1 ? out.uv1_kept : out.uv1_rejected);
+    }
+    out.uv1_is_atlas = uv1.scene_wide;
 }
 
 double triangle_area(const Affine& m, const Mesh& mesh, const Triangle& t) {
@@ -61,11 +69,12 @@ void count_emission(const Scene& scene, const Instance& instance, const Mesh& me
     }
 }
 
-Summary summarize(const Scene& scene) {
+Summary summarize(const Scene& scene, const ChartSet& uv1) {
     Summary out;
     out.emitters.resize(scene.materials.size());
     for (const Texture& texture : scene.textures) out.texels += std::uint64_t{texture.width} * texture.height;
     count_meshes(scene, out);
+    count_uv1(scene, uv1, out);
     for (const Instance& instance : scene.instances) {
         const Mesh& mesh = *scene.meshes[instance.mesh];
         for (const Vec3& p : mesh.positions) {
@@ -124,9 +133,15 @@ std::string uv1_state(const Scene& scene, const Summary& summary) {
     if (summary.with_uv1 == 0) return "none: charts will be made";
     std::string out =
         number(static_cast<double>(summary.with_uv1)) + " of " + std::to_string(scene.meshes.size()) + " meshes";
-    const std::size_t outside = summary.with_uv1 - summary.uv1_in_unit_square;
-    if (outside != 0) out += ", " + std::to_string(outside) + " of them outside [0, 1]: new charts for those";
-    return out;
+    if (summary.uv1_is_atlas) return out + ": kept as one atlas of the scene";
+    std::string uses;
+    const auto add = [&](std::size_t count, const char* use) {
+        if (count > 0) uses += (uses.empty() ? "" : ", ") + std::to_string(count) + " " + use;
+    };
+    add(summary.uv1_kept, "keep their charts, packed anew (why: uv1-repacked below)");
+    add(summary.uv1_rejected, "rejected, charts will be made (why: uv1-rejected below)");
+    add(summary.uv1_unused, "not lightmapped");
+    return out + ": " + uses;
 }
 
 // ---- Text -----------------------------------------------------------------------------------------------------------
@@ -273,10 +288,17 @@ Json sky_json(const Sky& sky) {
     return {{"color", json_of(sky.color)}, {"unit", "nits"}};
 }
 
+Json uv1_json(const Summary& summary) {
+    return {{"one_atlas", summary.uv1_is_atlas},
+            {"kept", summary.uv1_kept},
+            {"rejected", summary.uv1_rejected},
+            {"not_lightmapped", summary.uv1_unused}};
+}
+
 }  // namespace
 
-std::string describe(const Scene& scene, const Diagnostics& diagnostics) {
-    const Summary summary = summarize(scene);
+std::string describe(const Scene& scene, const ChartSet& uv1, const Diagnostics& diagnostics) {
+    const Summary summary = summarize(scene, uv1);
     std::string out;
     line(out, "scene", scene.source);
     line(out, "geometry",
@@ -304,8 +326,8 @@ std::string describe(const Scene& scene, const Diagnostics& diagnostics) {
     return out;
 }
 
-std::string describe_json(const Scene& scene, const Diagnostics& diagnostics) {
-    const Summary summary = summarize(scene);
+std::string describe_json(const Scene& scene, const ChartSet& uv1, const Diagnostics& diagnostics) {
+    const Summary summary = summarize(scene, uv1);
     Json lights = Json::array();
     for (const Light& light : scene.lights) lights.push_back(light_json(light));
     const Json out{{"scene", scene.source},
@@ -318,7 +340,7 @@ std::string describe_json(const Scene& scene, const Diagnostics& diagnostics) {
                    {"textures", {{"count", scene.textures.size()}, {"texels", summary.texels}}},
                    {"uv0_meshes", summary.with_uv0},
                    {"uv1_meshes", summary.with_uv1},
-                   {"uv1_in_unit_square_meshes", summary.uv1_in_unit_square},
+                   {"uv1", uv1_json(summary)},
                    {"vertex_color_meshes", summary.with_colors},
                    {"sky", sky_json(scene.sky)},
                    {"lights", std::move(lights)},

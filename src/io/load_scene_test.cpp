@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "chart/charts_of_uv1.h"
 #include "io/gltf_document_internal.h"
 #include "io/image_io.h"
 #include "io/info.h"
@@ -205,13 +206,57 @@ TEST(LoadScene, NotesThatAFileIsTheOutputOfABake) {
     EXPECT_EQ(Loaded(builder).notes("already-baked"), 1u);
 }
 
+ChartSet kept_of(const Scene& scene, Context& context) {
+    const WorldGeometry geometry = flatten(scene, context).value();
+    return charts_of_uv1(scene, geometry, {}, context).value();
+}
+
+std::string described(Loaded& loaded) {
+    const ChartSet uv1 = kept_of(loaded.scene(), loaded.context);
+    return describe(loaded.scene(), uv1, loaded.context.diagnostics);
+}
+
+nlohmann::json json_of(Loaded& loaded) {
+    const ChartSet uv1 = kept_of(loaded.scene(), loaded.context);
+    return nlohmann::json::parse(describe_json(loaded.scene(), uv1, loaded.context.diagnostics));
+}
+
+// A triangle with these TEXCOORD_1 in one node, and in a second one where `twice`.
+GltfBuilder triangle_with_uv1(const std::vector<float>& uv1, bool twice = false) {
+    GltfBuilder builder;
+    builder.triangle_node();
+    builder.root["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_1"] = builder.accessor<float>(uv1, "VEC2");
+    if (twice) builder.node({{"mesh", 0}, {"name", "second"}});
+    return builder;
+}
+
+TEST(Info, SaysWhatABakeKeepsOfTheSecondUvs) {
+    Loaded atlas(triangle_with_uv1({0, 0, 1, 0, 0, 1}));
+    EXPECT_NE(described(atlas).find("UV 1       1 of 1 meshes: kept as one atlas of the scene\n"), std::string::npos);
+    EXPECT_EQ(json_of(atlas)["uv1"]["one_atlas"], true);
+
+    Loaded twice(triangle_with_uv1({0, 0, 1, 0, 0, 1}, true));
+    const std::string repacked = described(twice);
+    EXPECT_NE(repacked.find("1 of 1 meshes: 1 keep their charts, packed anew"), std::string::npos) << repacked;
+    EXPECT_NE(repacked.find("'second'"), std::string::npos) << "why is said\n" << repacked;
+    EXPECT_NE(repacked.find("shares its mesh with another node"), std::string::npos) << repacked;
+    EXPECT_EQ(json_of(twice)["uv1"]["kept"], 1);
+
+    Loaded outside(triangle_with_uv1({0, 0, 2, 0, 0, 1}));
+    const std::string rejected = described(outside);
+    EXPECT_NE(rejected.find("1 of 1 meshes: 1 rejected, charts will be made"), std::string::npos) << rejected;
+    EXPECT_NE(rejected.find("it leaves [0, 1] at triangle 0"), std::string::npos) << rejected;
+    EXPECT_EQ(json_of(outside)["uv1"]["rejected"], 1);
+    EXPECT_EQ(json_of(outside)["uv1"]["one_atlas"], false);
+}
+
 TEST(Info, TellsWhatThereIs) {
-    const Loaded loaded(everything());
+    Loaded loaded(everything());
     ASSERT_TRUE(loaded.result.ok()) << loaded.error();
-    const std::string text = describe(loaded.scene(), loaded.context.diagnostics);
+    const std::string text = described(loaded);
     for (const char* part : {"1 meshes, 2 instances, 2 triangles", "spot", "candela", "UV 0", "2 lightmap"})
         EXPECT_NE(text.find(part), std::string::npos) << part << " in:\n" << text;
-    const auto json = nlohmann::json::parse(describe_json(loaded.scene(), loaded.context.diagnostics));
+    const auto json = json_of(loaded);
     EXPECT_EQ(json["triangles"], 2);
     EXPECT_EQ(json["lights"][0]["unit"], "candela");
     EXPECT_EQ(json["classes"]["lightmap"], 2);
@@ -222,8 +267,8 @@ TEST(Info, SaysThatThereIsNoLight) {
     GltfBuilder builder;
     builder.triangle_node();
     const auto told = [&] {
-        const Loaded loaded(builder);
-        const std::string text = describe(loaded.scene(), loaded.context.diagnostics);
+        Loaded loaded(builder);
+        const std::string text = described(loaded);
         return std::pair(text.find("light      none") != std::string::npos, text.find("--sky") != std::string::npos);
     };
     EXPECT_EQ(told(), std::pair(true, true));
@@ -238,8 +283,8 @@ TEST(Info, MeasuresEmitters) {
     builder.root["nodes"][0]["scale"] = {2, 2, 2};
     builder.root["meshes"][0]["primitives"][0]["material"] = 0;
     builder.add("materials", {{"name", "panel"}, {"emissiveFactor", {1, 0.5, 0}}});
-    const Loaded loaded(builder);
-    const auto json = nlohmann::json::parse(describe_json(loaded.scene(), loaded.context.diagnostics));
+    Loaded loaded(builder);
+    const auto json = json_of(loaded);
     ASSERT_EQ(json["emitters"].size(), 1u);
     EXPECT_EQ(json["emitters"][0]["area"], 2.0) << "half a square metre, four times as large";
     EXPECT_EQ(json["emitters"][0]["radiance"][1], 0.5);
