@@ -22,6 +22,8 @@ struct BakedTexel {
     Vec3 error;       // standard error, as the bake states it
     std::array<Vec3, kLayerCount> layers;
     float ambient_occlusion;
+    Vec3 normal;  // the vertex normal, of one of the texel's points
+    std::uint32_t chart;
 };
 
 inline std::vector<BakedTexel> bake_texels(const Scene& scene, const BakeOptions& options) {
@@ -33,7 +35,7 @@ inline std::vector<BakedTexel> bake_texels(const Scene& scene, const BakeOptions
             for (std::uint32_t x = 0; x < page.width; ++x) {
                 const std::uint32_t i = page.texel_at[std::size_t{y} * page.width + x];
                 if (i == kNone || page.coverage[i] != Coverage::baked) continue;
-                BakedTexel texel{x, y, {}, {}, {}, page.texels.ambient_occlusion[i]};
+                BakedTexel texel{x, y, {}, {}, {}, page.texels.ambient_occlusion[i], page.normal[i], page.chart[i]};
                 for (std::size_t l = 0; l < kLayerCount; ++l) {
                     texel.layers[l] = page.texels.layers[i][l].irradiance;
                     texel.irradiance += texel.layers[l];
