@@ -5,22 +5,12 @@
 #include <filesystem>
 #include <optional>
 
-#include "bake/memory.h"
-#include "bake/stage_timer.h"
-#include "base/cancelled.h"
-#include "base/progress_parts.h"
 #include "base/try.h"
-#include "chart/chart_set.h"
 #include "command.h"
-#include "image/tonemap.h"
 #include "interrupt.h"
-#include "io/bake_writer.h"
-#include "io/baked.h"
 #include "io/page_files.h"
 #include "io/partial_folder.h"
-#include "load.h"
-#include "path/path_integrator.h"
-#include "render/picture.h"
+#include "lumel/bake_folder.h"
 
 namespace lumel::cli {
 namespace {
@@ -34,10 +24,6 @@ struct Options {
     TexelOptions texels;
     LightOptions light;
 };
-
-constexpr std::uint32_t kViewWidth = 384, kViewHeight = 216;
-constexpr double kLitPictureWork = 0.1;   // of that of a path-traced one: camera rays, where all surfaces have texels
-constexpr std::uint32_t kViewGutter = 4;  // pixels between truth and bake
 
 Result<BakeOptions> read_options(const Options& options) {
     BakeOptions out = options.values;
@@ -69,53 +55,6 @@ Result<BakeOptions> read_options(const Options& options) {
     out.guide = options.guide != "off";
     out.stop = stop == "flux" ? StopRule::flux : stop == "error" ? StopRule::error : StopRule::fixed;
     return out;
-}
-
-// Truth on the left, the bake on the right, one exposure.
-std::vector<std::uint8_t> side_by_side(const Image& truth, const Image& baked) {
-    const float exposure = auto_exposure(truth);
-    const auto left = tonemap(truth, exposure), right = tonemap(baked, exposure);
-    const std::size_t row = std::size_t{truth.width} * 3;
-    std::vector<std::uint8_t> out;
-    for (std::size_t y = 0; y < truth.height; ++y) {
-        out.insert(out.end(), left.begin() + static_cast<std::ptrdiff_t>(y * row),
-                   left.begin() + static_cast<std::ptrdiff_t>((y + 1) * row));
-        out.insert(out.end(), std::size_t{kViewGutter} * 3, std::uint8_t{255});
-        out.insert(out.end(), right.begin() + static_cast<std::ptrdiff_t>(y * row),
-                   right.begin() + static_cast<std::ptrdiff_t>((y + 1) * row));
-    }
-    return out;
-}
-
-// preview_view_<k>.png from the files just written: what the pictures show is what a user gets. `page_memory`: for the
-// pages that are looked at together.
-Status write_views(BakeWriter& writer, const Transport& transport, const BakeOptions& options,
-                   const PictureOptions& picture, std::uint32_t count, std::uint64_t page_memory, Context& context) {
-    if (count == 0) return success();
-    LUMEL_TRY(BakedLighting baked, read_baked(writer.folder(), transport.scene, transport.geometry, page_memory));
-    const BakedLight light = light_of(baked);
-    const PathOptions path = transport_options(options);
-    LUMEL_TRY(const std::vector<Camera> views, choose_views(transport, count, context));
-    ProgressParts progress(context, "views", static_cast<double>(views.size()) * (1.0 + kLitPictureWork));
-    for (std::size_t k = 0; k < views.size(); ++k) {
-        progress.begin(1.0);
-        LUMEL_TRY(const Image truth, render_picture(transport, path, views[k], picture, nullptr, context));
-        progress.begin(kLitPictureWork);
-        LUMEL_TRY(const Image lit, render_picture(transport, path, views[k], picture, &light, context));
-        LUMEL_TRY_STATUS(
-            writer.write_view(k, 2 * picture.width + kViewGutter, picture.height, side_by_side(truth, lit)));
-    }
-    return success();
-}
-
-// What a page took while it was baked is free by now. 0: no ceiling.
-std::uint64_t memory_for_views(const BakeOptions& options, const BakeReport& report) {
-    if (options.max_memory_bytes == 0) return 0;
-    std::uint64_t most = 0;
-    for (const PageReport& page : report.pages)
-        most = std::max(
-            most, page_memory({page.width, page.height}, options.mips.value_or(0), options.seams, report.threads));
-    return most;
 }
 
 // Where to look first.
@@ -176,32 +115,17 @@ Status run(const Options& options) {
     RunContext run_context(bake_options.threads, options.progress);
     Context& context = run_context.get();
     LUMEL_TRY(const LoadedScene loaded, load_lit_scene(options.scene, bake_options, context));
-    LUMEL_TRY(BakeWriter writer, BakeWriter::create(options.output, loaded, bake_options, context));
-    run_context.interrupt().set_cleaner([folder = writer.folder()] { remove_while_written(folder); });
-    BakeSink sink;
-    std::uint64_t kept = 0;
-    sink.layout = [&](const WorldGeometry& geometry, const ChartSet& charts, const Atlas& atlas) {
-        kept = atlas.kept;
-        return writer.layout(geometry, charts, atlas);
+    FolderOptions folder;
+    folder.views = options.views;
+    folder.view_samples = options.view_samples;
+    folder.begun = [&](const std::filesystem::path& partial) {
+        run_context.interrupt().set_cleaner([partial] { remove_while_written(partial); });
     };
-    sink.page = [&](const Lightmap& page) { return writer.page(page); };
-    sink.finished = [&](const Transport& transport, BakeReport& report) -> Status {
-        {
-            const StageTimer timer(report, "scene");
-            LUMEL_TRY_STATUS(writer.write_scene());
-        }
-        const StageTimer timer(report, "views");
-        const PictureOptions picture{kViewWidth, kViewHeight, options.view_samples};
-        return write_views(writer, transport, bake_options, picture, options.views,
-                           memory_for_views(bake_options, report), context);
-    };
-    LUMEL_TRY(BakeReport report, bake(loaded.scene, bake_options, sink, context));
-    LUMEL_TRY_STATUS(writer.finish(report, context.diagnostics));
-    if (!run_context.interrupt().begin_commit()) return cancelled_error();
-    LUMEL_TRY_STATUS(writer.commit());
+    folder.may_appear = [&] { return run_context.interrupt().begin_commit(); };
+    LUMEL_TRY(const BakeReport report, bake_to_folder(loaded, bake_options, options.output, folder, context));
     run_context.finish();
     print_summary(report, options.output, bake_options.denoise.value_or(preset_values(bake_options.preset).denoise));
-    if (bake_options.atlas) print_kept(kept, report.charts, *bake_options.atlas);
+    if (bake_options.atlas) print_kept(report.kept_charts, report.charts, *bake_options.atlas);
     if (bake_options.collapse > 0.0) print_collapsed(report);
     print_reached(report, bake_options);
     print_files(options.output, options.views);

@@ -14,7 +14,8 @@
 #include "io/baked.h"
 #include "io/image_io.h"
 #include "io/light_record.h"
-#include "load.h"
+#include "job/baked_light.h"
+#include "lumel/load.h"
 #include "path/path_integrator.h"
 #include "render/picture.h"
 

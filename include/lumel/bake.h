@@ -1,4 +1,4 @@
-// The main job as a library call.
+// The bake as a library call: pages go to a sink. To a folder of files: lumel/bake_folder.h.
 #pragma once
 
 #include <cstdint>
@@ -14,6 +14,7 @@
 
 namespace lumel {
 
+// Opaque to users of the package: to be handed on. read_pixels() (lumel/page.h) has the pixels of a Lightmap.
 struct Lightmap;  // post/lightmap.h
 struct ChartSet;  // chart/chart_set.h
 struct Atlas;
@@ -69,6 +70,7 @@ struct BakeReport {
     std::uint64_t predicted_memory_bytes = 0;  // before the first page: for all that `lumel bake` does
     std::string tracer;                        // back end and instruction set
     unsigned threads = 0;
+    std::uint64_t kept_charts = 0;  // in the places that options.atlas gives them
 };
 
 // Receives pages in order as they are done, so that a level larger than memory can be streamed to disk. A member left

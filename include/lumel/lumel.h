@@ -2,8 +2,11 @@
 #pragma once
 
 #include "lumel/bake.h"
+#include "lumel/bake_folder.h"
 #include "lumel/context.h"
+#include "lumel/load.h"
 #include "lumel/options.h"
+#include "lumel/page.h"
 #include "lumel/result.h"
 #include "lumel/scene.h"
 #include "lumel/vec.h"

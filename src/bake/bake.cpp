@@ -419,6 +419,7 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const Ba
     report.triangles = geometry.triangle_count();
     report.instances = scene.instances.size();
     report.charts = atlas.placements.size();
+    report.kept_charts = atlas.kept;
     report.texels_per_metre = atlas.texels_per_metre;
     report.least_texels_per_metre = atlas.least_texels_per_metre;
     report.peak_memory_bytes = peak_memory();

@@ -6,15 +6,13 @@
 #include <vector>
 
 #include "lumel/context.h"
+#include "lumel/page.h"
 #include "lumel/result.h"
 #include "path/radiance_sums.h"
 #include "texel/texel_buffer.h"
 #include "texel/texel_surface.h"
 
 namespace lumel {
-
-// Coverage decides whether a texel is baked, never its colour.
-enum class Coverage : std::uint8_t { none = 0, dilated = 1, filled = 2, baked = 3 };
 
 struct Lightmap {
     std::uint32_t page = 0, mip = 0, width = 0, height = 0;
