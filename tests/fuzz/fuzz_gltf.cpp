@@ -117,7 +117,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const lumel::Status valid = lumel::validate(loaded->scene);
     LUMEL_CHECK(valid.ok(), valid.error().text());
     (void)lumel::flatten(loaded->scene, context);
-    (void)lumel::describe_json(loaded->scene, context.diagnostics);
+    lumel::ChartSet uv1;
+    uv1.meshes.resize(loaded->scene.meshes.size());
+    (void)lumel::describe_json(loaded->scene, uv1, context.diagnostics);
     (void)lumel::hash_scene(loaded->scene);
     return 0;
 }
