@@ -2,6 +2,7 @@
 // vertex normal, and none of the edges of the facets.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <utility>
