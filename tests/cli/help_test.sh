@@ -7,7 +7,8 @@
 # says COMMAND TEXT: its help, on however many lines.
 says() {
     expect 0 '' "$1" --help
-    tr -s ' \n' ' ' <out.txt | grep -qF -- "$2" || complain "lumel $1 --help: no '$2'"
+    # CLI11 writes a default as =x, later as [x] behind what else is in brackets.
+    sed -E 's/ \[([^]]*)\]( *$|  )/=\1\2/' out.txt | tr -s ' \n' ' ' | grep -qF -- "$2" || complain "lumel $1 --help: no '$2'"
 }
 says encode 'hdr}=exr; with auto, exr or ktx2'
 says encode '=bc7; with auto, the best'
