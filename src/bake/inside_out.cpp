@@ -25,7 +25,7 @@ bool is_lit_from_behind(std::uint32_t instance, const Transport& transport, cons
         points[i] = {first + static_cast<std::uint32_t>(i * count / kWavefrontLanes), root * (1.0f - along),
                      root * along};
     }
-    std::array<std::uint8_t, kWavefrontLanes> back_side, valid;
+    std::array<std::uint8_t, kWavefrontLanes> back_side;
     back_side.fill(1);
     std::array<SurfaceStart, kWavefrontLanes> surface;
     integrator.surface_starts(points, back_side, workspace, surface);
@@ -33,7 +33,7 @@ bool is_lit_from_behind(std::uint32_t instance, const Transport& transport, cons
     for (std::uint32_t i = 0; i < kWavefrontLanes; ++i)
         starts[i] = {surface[i].origin, surface[i].normal, key, i, surface[i].skip};
     std::array<Vec3, kWavefrontLanes> light;
-    integrator.gather_irradiance(starts, workspace, light, valid);
+    integrator.gather_irradiance(starts, workspace, light);
     return std::ranges::count_if(light, [](Vec3 v) { return max_component(v) > 0.0f; }) * 8 >=
            std::ptrdiff_t{kWavefrontLanes};
 }

@@ -23,8 +23,8 @@ public:
     // Counts the texels of a finished page.
     void add(const Lightmap& map);
 
-    // Warnings: `backs-seen` for nodes whose texels mostly meet the backs of single-sided surfaces, which voids their
-    // paths; `inside-out` for others whose texels are dark while light of any layer reaches the other side of their
+    // Warnings: `backs-seen` for nodes whose texels mostly meet the backs of single-sided surfaces, and are invalid for
+    // that; `inside-out` for others whose texels are dark while light of any layer reaches the other side of their
     // faces (a path in eight from there finds some). Any number of threads says the same.
     void warn(const Transport& transport, Diagnostics& diagnostics) const;
 

@@ -1,7 +1,9 @@
 // Sample points that are shut in: below a wall that stands on the texel, inside a column. Behind single-sided surfaces
 // their rays meet backs, which tell; behind double-sided ones, which is how many tools export everything, they would
-// darken what is seen of the texel. Based on: O'Donnell 2018 (validity of sample points by back faces). Different here:
-// what decides is that a point sees nothing but the back faces of double-sided surfaces, most of them near.
+// darken what is seen of the texel.
+//
+// Based on: O'Donnell 2018 (validity of sample points by back faces). Different here: what decides is that a point
+// sees nothing but the back faces of double-sided surfaces, most of them near.
 #pragma once
 
 #include <cstdint>
