@@ -140,7 +140,8 @@ Run add_bake(CLI::App& app) {
     app.add_option("SCENE", options->scene, "glTF scene: .glb or .gltf")->required();
     app.add_option("-o,--output", options->output, "Output folder; appears whole or not at all")->required();
     options->texels.declare(app);
-    app.add_option("--views", options->views, "Camera views rendered beside the truth")->check(CLI::Range(0u, 16u));
+    app.add_option("--views", options->views, "Camera views rendered beside the truth")
+        ->check(CLI::Range(0u, kMostViews));
 
     app.add_option("--view-samples", options->view_samples, "Paths per pixel of those views")
         ->check(CLI::Range(1u, 1u << 16));

@@ -15,6 +15,7 @@
 #include "io/image_io.h"
 #include "io/light_record.h"
 #include "job/baked_light.h"
+#include "lumel/bake_folder.h"
 #include "lumel/load.h"
 #include "path/path_integrator.h"
 #include "render/picture.h"
@@ -52,19 +53,30 @@ Result<Camera> parse_camera(const std::string& text) {
     return look_at(eye, target, fov * kRadians);
 }
 
-// A camera of the scene by name, "view K" (found automatically), a point of view, or the first there is.
+// K of "view K".
+std::optional<std::size_t> number_of_view(std::string_view text) {
+    constexpr std::string_view kPrefix = "view ";
+    if (!text.starts_with(kPrefix)) return {};
+    text.remove_prefix(kPrefix.size());
+    std::size_t number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error != std::errc{} || end != text.data() + text.size()) return {};
+    return number;
+}
+
+// A camera of the scene by name, "view K" (that of preview_view_K.png), a point of view, or the first there is.
 Result<Camera> find_camera(const std::string& text, const Transport& transport, Context& context) {
     if (text.find(';') != std::string::npos) return parse_camera(text);
     for (const Camera& camera : transport.scene.cameras)
         if (camera.name == text) return camera;
-    constexpr std::size_t kAutomaticViews = 4;
-    LUMEL_TRY(const std::vector<Camera> views, choose_views(transport, kAutomaticViews, context));
-    if (text.empty()) return views.front();
-    std::string known;
-    for (const Camera& camera : views) {
-        if (camera.name == text) return camera;
-        known += (known.empty() ? "'" : ", '") + camera.name + "'";
+    const std::optional<std::size_t> number = number_of_view(text);
+    if (text.empty() || (number && *number < kMostViews)) {
+        const std::size_t k = number.value_or(0);
+        LUMEL_TRY(const std::vector<Camera> views, choose_views(transport, k + 1, context));
+        return views[k];
     }
+    std::string known = "'view 0' to 'view " + std::to_string(kMostViews - 1) + "'";
+    for (const Camera& camera : transport.scene.cameras) known += ", '" + camera.name + "'";
     return Error{ErrorCode::usage, "--camera: there is no camera '" + text + "'", transport.scene.source,
                  "known: " + known + ", or eye;target;vfov_degrees such as '0,1.7,4;0,1,0;60'"};
 }
@@ -176,7 +188,8 @@ Run add_render(CLI::App& app) {
         ->required();
     app.add_option(
            "--camera", options->camera,
-           "Name of a camera, 'view K', or eye;target;vfov_degrees (default: the scene's first camera, else view 0)")
+           "Name of a camera, 'view K' of the bake's pictures, or eye;target;vfov_degrees (default: view 0, the scene's "
+           "first camera where it has one)")
         ->check(not_empty());
     app.add_option("--baked", options->baked,
                    "Output folder of a bake of this scene: light the view by it (default: path-traced)")

@@ -11,8 +11,10 @@
 
 namespace lumel {
 
+inline constexpr std::uint32_t kMostViews = 16;
+
 struct FolderOptions {
-    std::uint32_t views = 2;          // camera views rendered beside the path-traced truth, 0..16
+    std::uint32_t views = 2;          // camera views rendered beside the path-traced truth, 0..kMostViews
     std::uint32_t view_samples = 32;  // paths per pixel of those, 1..65536
     // Members left empty are not called.
     std::function<Status(const PagePixels&)> page = {};  // each page once it is written, followed by its mips

@@ -7,6 +7,7 @@
 #include "base/try.h"
 #include "image/tonemap.h"
 #include "job/baked_light.h"
+#include "plot/label.h"
 
 namespace lumel {
 namespace {
@@ -15,7 +16,7 @@ constexpr std::uint32_t kWidth = 384, kHeight = 216;
 constexpr double kLitPictureWork = 0.1;  // of that of a path-traced one: camera rays, where all surfaces have texels
 constexpr std::uint32_t kGutter = 4;     // pixels between truth and bake
 
-// Truth on the left, the bake on the right, one exposure.
+// Truth on the left, the bake on the right, one exposure; each says what it is.
 std::vector<std::uint8_t> side_by_side(const Image& truth, const Image& baked) {
     const float exposure = auto_exposure(truth);
     const auto left = tonemap(truth, exposure), right = tonemap(baked, exposure);
@@ -28,6 +29,9 @@ std::vector<std::uint8_t> side_by_side(const Image& truth, const Image& baked) {
         out.insert(out.end(), right.begin() + static_cast<std::ptrdiff_t>(y * row),
                    right.begin() + static_cast<std::ptrdiff_t>((y + 1) * row));
     }
+    const std::uint32_t width = truth.width + kGutter + baked.width;
+    draw_label(out, width, 0, "path-traced");
+    draw_label(out, width, truth.width + kGutter, "baked");
     return out;
 }
 

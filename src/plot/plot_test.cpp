@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <vector>
 
+#include "plot/label.h"
 #include "plot/plot_text.h"
 
 namespace lumel {
@@ -61,6 +65,24 @@ TEST(Plot, WordsHaveBoxes) {
     EXPECT_TRUE(text_boxes("").empty());
     EXPECT_GT(text_boxes("relMSE").size(), 10u);
     EXPECT_GT(text_width("CPU seconds"), 2.0f * text_width("CPU"));
+}
+
+TEST(Label, IsInTheLowerCornerOfItsPart) {
+    constexpr std::uint32_t kWidth = 64, kHeight = 32, kLeft = 32;
+    std::vector<std::uint8_t> rgb(std::size_t{kWidth} * kHeight * 3, 128);
+    draw_label(rgb, kWidth, kLeft, "L");
+    const auto at = [&](std::uint32_t x, std::uint32_t y) { return int{rgb[3 * (y * kWidth + x)]}; };
+    EXPECT_EQ(at(kLeft - 1, kHeight - 1), 128);
+    EXPECT_EQ(at(kLeft, kHeight - 1), 0);
+    EXPECT_EQ(at(kLeft, 0), 128);
+    EXPECT_EQ(at(kWidth - 1, kHeight - 1), 128) << "no wider than its words";
+    EXPECT_GT(std::ranges::count(rgb, 255), 0);
+}
+
+TEST(Label, IsCutWhereItDoesNotFit) {
+    std::vector<std::uint8_t> rgb(4 * 4 * 3, 128);
+    draw_label(rgb, 4, 2, "path-traced");
+    for (std::size_t y = 0; y < 4; ++y) EXPECT_EQ(rgb[3 * (4 * y + 1)], 128) << y;
 }
 
 }  // namespace

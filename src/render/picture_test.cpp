@@ -223,6 +223,7 @@ TEST(Views, ClosedRoomsAreLookedAtFromInsideAndOpenScenesFromOutside) {
             const Vec3 eye = view.transform.translation;
             const bool inside = eye.x > 0 && eye.x < 4 && eye.y > 0 && eye.y < 3 && eye.z > 0 && eye.z < 5;
             EXPECT_EQ(inside, inward) << view.name << " at " << eye.x << " " << eye.y << " " << eye.z;
+            EXPECT_GE(view.transform.columns[2].y, 0.0f) << view.name << " does not look up";
         }
     }
 }

@@ -16,6 +16,7 @@ constexpr std::uint32_t kCandidates = 192;
 constexpr std::uint32_t kProbeRays = 64;
 constexpr float kFieldOfView = 60.0f * kPi / 180.0f;
 constexpr std::uint32_t kKey = 0x5eed;
+constexpr float kHighest = 0.0f;  // sine of how far a view may look up: ceilings and sky show little of a bake
 
 struct Candidate {
     Vec3 eye, target;
@@ -45,10 +46,10 @@ Candidate look_around(Vec3 eye, std::uint32_t key, const Tracer& tracer, const W
         ++front;
     }
     if (front < kProbeRays / 2 || nearest < 0.004f * diagonal) return out;
-    // Look where the view is deepest: mean distance within 40 degrees of each ray.
+    // Look where the view is deepest, level or downwards: mean distance within 40 degrees of each ray.
     float best = -1.0f;
     for (std::uint32_t i = 0; i < kProbeRays; ++i) {
-        if (hits[i].missed()) continue;
+        if (hits[i].missed() || rays[i].direction.y > kHighest) continue;
         float sum = 0.0f, n = 0.0f;
         for (std::uint32_t k = 0; k < kProbeRays; ++k) {
             if (dot(rays[i].direction, rays[k].direction) < 0.77f) continue;

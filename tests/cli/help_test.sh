@@ -28,7 +28,7 @@ says bake '=none Ceiling'
 says bake "=the sidecar's, or none Sky"
 says bake '=no sun X,Y,Z'
 says atlas '=a new layout'
-says render "the scene's first camera, else view 0"
+says render "default: view 0, the scene's first camera where it has one"
 for command in bake atlas render pack encode check; do says $command 'auto: a bar on a terminal, else plain'; done
 
 finish
