@@ -49,10 +49,15 @@ void print(const Finding& f) {
     std::printf("\n");
 }
 
-void print_all(const SeamCheck& seams, const std::vector<Finding>& findings) {
-    print(seams.open, seams.parted);
-    for (const Finding& f : findings)
+void print_all(const CheckReport& report) {
+    print(report.seams.open, report.seams.parted);
+    for (const Finding& f : report.findings)
         if (f.is_measured) print(f);
+    for (const Diagnostic& w : report.remarks.warnings)
+        std::printf("the bake warned of [%s], %llu times: %s\n", w.code.c_str(),
+                    static_cast<unsigned long long>(w.count), w.message.c_str());
+    if (const std::string text = advice(report); !text.empty()) std::printf("advice: %s\n", text.c_str());
+    std::printf("%s\n", verdict(report.findings).c_str());
 }
 
 // Whether all limits are kept.
@@ -63,7 +68,8 @@ Result<bool> run_in(const Options& options, Context& context) {
     LUMEL_TRY(const SeamCheck seams, check_seams(disk.bake, {}, *tracer, context));
     LUMEL_TRY(const TexelCheck texels, check_texels(disk.bake, options.texels, context));
     const std::vector<Finding> findings = judge(seams, texels, options.limits);
-    const CheckReport report{disk.bake, seams, texels, findings};
+    LUMEL_TRY(const BakeRemarks remarks, read_remarks(options.folder));
+    const CheckReport report{disk.bake, seams, texels, findings, remarks};
     if (!options.html.empty()) {
         const std::string html = check_html(report, options.folder);
         LUMEL_TRY_STATUS(write_file(options.html, std::as_bytes(std::span(html))));
@@ -71,7 +77,7 @@ Result<bool> run_in(const Options& options, Context& context) {
     if (options.json)
         std::fputs(check_json(report).c_str(), stdout);
     else
-        print_all(seams, findings);
+        print_all(report);
     return std::ranges::all_of(findings, &Finding::passed);
 }
 

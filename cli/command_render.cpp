@@ -186,10 +186,10 @@ Run add_render(CLI::App& app) {
     app.add_option("SCENE", options->scene, "glTF scene: .glb or .gltf")->required();
     app.add_option("-o,--output", options->output, "Picture: .png (tone-mapped), .exr, .hdr or .pfm (radiance)")
         ->required();
-    app.add_option(
-           "--camera", options->camera,
-           "Name of a camera, 'view K' of the bake's pictures, or eye;target;vfov_degrees (default: view 0, the scene's "
-           "first camera where it has one)")
+    app.add_option("--camera", options->camera,
+                   "Name of a camera, 'view K' of the bake's pictures, or eye;target;vfov_degrees (default: view 0, "
+                   "the scene's "
+                   "first camera where it has one)")
         ->check(not_empty());
     app.add_option("--baked", options->baked,
                    "Output folder of a bake of this scene: light the view by it (default: path-traced)")

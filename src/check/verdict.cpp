@@ -48,4 +48,13 @@ std::vector<Finding> judge(const SeamCheck& seams, const TexelCheck& texels, con
     return out;
 }
 
+std::string verdict(std::span<const Finding> findings) {
+    std::string failed;
+    for (const Finding& f : findings)
+        if (!f.passed()) failed += (failed.empty() ? "" : ", ") + f.name;
+    const std::string limits = std::to_string(std::ranges::count_if(findings, &Finding::has_limit));
+    return failed.empty() ? "passed: all " + limits + " limits are kept"
+                          : "FAILED: of " + limits + " limits these are not kept: " + failed;
+}
+
 }  // namespace lumel

@@ -1,6 +1,7 @@
 // The gate: figures of a bake against what is allowed.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -35,5 +36,8 @@ struct Finding {
 
 // In a fixed order: all figures that can have a limit.
 std::vector<Finding> judge(const SeamCheck& seams, const TexelCheck& texels, const CheckLimits& limits);
+
+// "passed: all 6 limits are kept", or which are not.
+std::string verdict(std::span<const Finding> findings);
 
 }  // namespace lumel

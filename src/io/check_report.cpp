@@ -96,6 +96,17 @@ float exposure_of(const CheckedBake& bake) {
 
 }  // namespace
 
+std::string advice(const CheckReport& report) {
+    constexpr double kPlain = 0.01;  // of the seams' length
+    const SeamContrast& seams = report.seams.open;
+    if (report.remarks.seams_solved || !(seams.visible_metres > kPlain * seams.metres)) return {};
+    std::array<char, 160> text{};
+    std::snprintf(text.data(), text.size(),
+                  "%.1f %% of the seams' length show; lumel bake --seams on makes both sides of each agree",
+                  100.0 * seams.visible_metres / seams.metres);
+    return text.data();
+}
+
 std::string check_json(const CheckReport& report) {
     Json out;
     out["version"] = 1;
@@ -109,6 +120,10 @@ std::string check_json(const CheckReport& report) {
                                    {"passed", f.passed()},
                                    {"places", std::move(places)}});
     }
+    out["bake_warnings"] = Json::array();
+    for (const Diagnostic& w : report.remarks.warnings)
+        out["bake_warnings"].push_back({{"code", w.code}, {"message", w.message}, {"count", w.count}});
+    out["advice"] = advice(report);
     out["seams"] = {{"open", contrast_json(report.seams.open)}, {"parted", contrast_json(report.seams.parted)}};
     out["worst_seams"] = Json::array();
     for (const SeamDefect& d : report.seams.worst)
@@ -128,8 +143,12 @@ std::string check_html(const CheckReport& report, const std::string& title) {
     std::string out =
         "<!DOCTYPE html>\n<html lang=\"en\"><meta charset=\"utf-8\"><title>lumel check</title>\n<style>body{font:15px "
         "sans-serif;margin:2em;background:#222;color:#ddd}td,th{padding:.2em 1em;text-align:left}.bad{color:#f66}.good"
-        "{color:#6d6}img{max-width:100%;image-rendering:pixelated;border:1px solid #555}</style>\n<h1>lumel check: ";
-    out += escape(title) + "</h1>\n<table><tr><th>what<th>value<th>allowed<th></tr>\n";
+        "{color:#6d6}img{min-width:min(100%,1024px);max-width:100%;image-rendering:pixelated;border:1px solid "
+        "#555}</style>\n<h1>lumel check: ";
+    const bool passed = std::ranges::all_of(report.findings, &Finding::passed);
+    out += escape(title) + "</h1>\n<p class=" + (passed ? "good" : "bad") + ">" + verdict(report.findings) + "</p>\n";
+    if (const std::string text = advice(report); !text.empty()) out += "<p>Advice: " + escape(text) + "</p>\n";
+    out += "<table><tr><th>what<th>value<th>allowed<th></tr>\n";
     for (const Finding& f : report.findings)
         out += "<tr><td>" + f.text + "<td>" + (f.is_measured ? value_text(f, f.value) : "no seams") + "<td>" +
                limit_text(f) + "<td" +
@@ -137,7 +156,14 @@ std::string check_html(const CheckReport& report, const std::string& title) {
                 : f.passed()   ? " class=good>passed"
                                : " class=bad>failed: " + f.option) +
                "</tr>\n";
-    out += "</table>\n<h2>Worst seams</h2>\n<table><tr><th>contrast<th>position (m)<th>nodes<th>page<th>texel</tr>\n";
+    out += "</table>\n";
+    if (!report.remarks.warnings.empty()) out += "<h2>The bake warned of</h2>\n";
+    for (const Diagnostic& w : report.remarks.warnings) {
+        out += "<p>" + escape(w.message) + " [" + escape(w.code) + ", " + std::to_string(w.count) + " times]";
+        for (const std::string& example : w.examples) out += "<br>" + escape(example);
+        out += "</p>\n";
+    }
+    out += "<h2>Worst seams</h2>\n<table><tr><th>contrast<th>position (m)<th>nodes<th>page<th>texel</tr>\n";
     constexpr std::size_t kShown = 20;
     for (std::size_t i = 0; i < std::min(kShown, report.seams.worst.size()); ++i) {
         const SeamDefect& d = report.seams.worst[i];

@@ -7,6 +7,7 @@
 
 #include "check/checked_bake.h"
 #include "check/verdict.h"
+#include "io/read_report.h"
 #include "lumel/result.h"
 
 namespace lumel {
@@ -17,7 +18,11 @@ struct CheckReport {
     const SeamCheck& seams;
     const TexelCheck& texels;
     std::span<const Finding> findings;
+    const BakeRemarks& remarks;
 };
+
+// What would make the bake better, in a sentence; empty where nothing is known to.
+std::string advice(const CheckReport& report);
 
 // Its members: docs/cli.md, "check".
 std::string check_json(const CheckReport& report);

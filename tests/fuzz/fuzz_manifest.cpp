@@ -1,5 +1,5 @@
 // Any text as the manifest of an output folder: the masters that it names, the light that it records, which lights a
-// scene, the layout that it records, which a level keeps.
+// scene, the layout that it records, which a level keeps; and as its report: the warnings.
 #include <algorithm>
 #include <cstdio>
 
@@ -9,6 +9,7 @@
 #include "io/light_json.h"
 #include "io/light_record.h"
 #include "io/master.h"
+#include "io/read_report.h"
 #include "lumel/bake.h"
 #include "scene/world_geometry.h"
 #include "support/load_gltf.h"
@@ -53,6 +54,8 @@ std::vector<std::byte> seed(const lumel::SkyOptions& sky, const lumel::SunOption
     std::snprintf(id, sizeof id, "%016llx", static_cast<unsigned long long>(name.id));
     manifest["instances"].push_back({{"transform", {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}}, {"charts", {0, 1}}});
     manifest["charts"] = {{"id", {id}}, {"page", {0}}, {"box", {{0, 2, 8, 8}}}};
+    manifest["options"] = {{"seams", true}};
+    manifest["warnings"] = {{{"code", "uv-bleeding"}, {"message", "m"}, {"count", 2}, {"examples", {"mesh 0"}}}};
     return lumel::fuzz::bytes_of(manifest.dump());
 }
 
@@ -99,6 +102,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto record = lumel::parse_light_record({reinterpret_cast<const char*>(data), size}, "out", "fuzz.json");
     const auto atlas = lumel::parse_atlas_record({reinterpret_cast<const char*>(data), size}, "fuzz.json");
     if (atlas.ok()) keep_layout(*atlas);
+    const auto remarks = lumel::parse_remarks({reinterpret_cast<const char*>(data), size}, "fuzz.json");
+    if (remarks.ok())
+        for (const lumel::Diagnostic& warning : remarks->warnings)
+            LUMEL_CHECK(warning.examples.size() <= lumel::Diagnostics::kMaxExamples, warning.examples.size());
     if (!record.ok()) return 0;
     lumel::BakeOptions options;
     options.sky = record->sky;
