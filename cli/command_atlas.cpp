@@ -23,7 +23,11 @@ void print_summary(const AtlasStatistics& s, const Atlas& atlas, const std::stri
                 static_cast<unsigned long long>(s.charts), atlas.pages.size(), atlas.pages.size() == 1 ? "" : "s",
                 static_cast<unsigned long long>(s.used), static_cast<unsigned long long>(s.page_texels),
                 100.0 * s.efficiency, static_cast<unsigned long long>(s.covered));
-    std::printf("%.2f texels/m on average, L2 stretch %.4f\n", s.mean_density, s.stretch);
+    std::printf("%.2f texels/m on average, L2 stretch %.4f (1: lengths on the page are true)\n", s.mean_density,
+                s.stretch);
+    std::printf("layout: %s\npictures: %s (charts, waste, density, stretch)\n",
+                (std::filesystem::path(folder) / kAtlasFile).c_str(),
+                (std::filesystem::path(folder) / "atlas_*.png").c_str());
 }
 
 Status run(const Options& options) {

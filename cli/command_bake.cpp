@@ -106,7 +106,8 @@ void print_summary(const BakeReport& report, const std::string& folder, bool is_
     else
         std::printf("nRMSE unknown from single paths; ");
     if (std::isfinite(report.cell_bias) && std::isfinite(report.cell_bias_error))
-        std::printf("bias by cells %+.2f +- %.2f %%; ", 100.0 * report.cell_bias, 100.0 * report.cell_bias_error);
+        std::printf("bias by cells %+.2f +- %.2f %% of the light; ", 100.0 * report.cell_bias,
+                    100.0 * report.cell_bias_error);
     std::printf("peak memory %llu MB\n", static_cast<unsigned long long>(report.peak_memory_bytes >> 20));
 }
 

@@ -29,16 +29,21 @@ Image first_channels(const Image& image, std::uint32_t channels) {
     return out;
 }
 
-// Radiance against the tone-mapped picture of it: never zero apart, and by how much says nothing.
-Status warn_of_mixed_kinds(const Options& options) {
+// Radiance against the tone-mapped picture of it: never zero apart, and by how much says nothing. Two such pictures may
+// have an exposure each, and a tone curve hides what is bright.
+Status warn_of_codes(const Options& options) {
     LUMEL_TRY(const bool image, is_eight_bit_image(options.image));
     LUMEL_TRY(const bool reference, is_eight_bit_image(options.reference));
-    if (image == reference) return success();
-    std::fprintf(
-        stderr,
-        "lumel: warning: %s has 8-bit codes, read as stored / 255, but %s has linear numbers: unless the codes "
-        "are linear, too, compare two .exr, .hdr or .pfm, or two .png [mixed-kinds]\n",
-        (image ? options.image : options.reference).c_str(), (image ? options.reference : options.image).c_str());
+    if (image && reference)
+        std::fprintf(stderr,
+                     "lumel: note: both have 8-bit codes, compared as stored / 255: the figures are of pictures, not "
+                     "of light; for that compare .exr, .hdr or .pfm [codes]\n");
+    if (image != reference)
+        std::fprintf(
+            stderr,
+            "lumel: warning: %s has 8-bit codes, read as stored / 255, but %s has linear numbers: unless the codes "
+            "are linear, too, compare two .exr, .hdr or .pfm [mixed-kinds]\n",
+            (image ? options.image : options.reference).c_str(), (image ? options.reference : options.image).c_str());
     return success();
 }
 
@@ -55,7 +60,7 @@ Result<Image> read_compared(const std::string& path) {
 Result<ImageMetrics> measure(const Options& options) {
     LUMEL_TRY(Image image, read_compared(options.image));
     LUMEL_TRY(Image reference, read_compared(options.reference));
-    LUMEL_TRY_STATUS(warn_of_mixed_kinds(options));
+    LUMEL_TRY_STATUS(warn_of_codes(options));
     const auto size = [](const Image& i) { return std::to_string(i.width) + "x" + std::to_string(i.height); };
     if (image.width != reference.width || image.height != reference.height)
         return Error{ErrorCode::invalid_input,

@@ -171,7 +171,10 @@ Status check_usage(const Options& options) {
 Status print_measured(const Options& options, const BlockSample& sample, Context& context) {
     LUMEL_TRY(const std::vector<TableRow> rows, measure_all(sample, all_storages(), quality_of(options), context));
     print_table(rows);
-    return options.plot.empty() ? success() : write_table_plot(options.plot, rows);
+    if (options.plot.empty()) return success();
+    LUMEL_TRY_STATUS(write_table_plot(options.plot, rows));
+    std::fprintf(stderr, "plot: %s\n", options.plot.c_str());
+    return success();
 }
 
 Status run(const Options& options) {

@@ -111,6 +111,10 @@ Result<std::vector<TableRow>> measure_all(const BlockSample& sample, std::span<c
 }
 
 void print_table(std::span<const TableRow> rows) {
+    std::fprintf(
+        stderr,
+        "errors of the light E/pi over the normals of each texel's hemisphere, of the mean of E/pi (at_normal: "
+        "for the texel's own normal alone)\n");
     std::printf("encoding,storage,bytes_per_texel,decode_operations,nrmse,p99,worst,at_normal,between,outside\n");
     for (const TableRow& row : rows) {
         const ReconstructionError& e = row.error;

@@ -2,6 +2,7 @@
 #include "base/try.h"
 #include "io/image_io.h"
 #include "io/light_record.h"
+#include "light/dark_sky.h"
 #include "lumel/bake.h"
 #include "lumel/load.h"
 
@@ -15,6 +16,7 @@ Result<LoadedScene> load_lit_scene(const std::filesystem::path& path, const Bake
         LUMEL_TRY(loaded.sky_hash, hash_file(options.sky.file));
     }
     LUMEL_TRY_STATUS(apply_lighting(loaded.scene, options));
+    warn_of_dark_sky(loaded.scene, context.diagnostics);
     return loaded;
 }
 

@@ -56,11 +56,15 @@ for pair in 'view.exr view.png' 'view.png view.pfm'; do
         grep -q "\"$figure\"" out.txt || complain "compare $pair: no $figure in $(cat out.txt)"
     done
 done
-for pair in 'view.exr view.pfm' 'view.png view.png'; do
-    # shellcheck disable=SC2086
-    "$lumel" compare $pair >out.txt 2>err.txt || complain "compare $pair: exit code $?"
-    [ -s err.txt ] && complain "compare $pair: says $(cat err.txt)"
-done
+expect 0 '[codes]' compare view.png view.png
+"$lumel" compare view.exr view.pfm >out.txt 2>err.txt || complain "compare view.exr view.pfm: exit code $?"
+[ -s err.txt ] && complain "compare view.exr view.pfm: says $(cat err.txt)"
+
+# A sky in units of its own beside a sun in lux.
+sun=(--sun-direction 0,-1,0 --sun-illuminance 100000)
+expect 0 '[dark-sky, 1]: the sky lights a plane with 3.14 lux' bake ok.gltf -o lit/ "${quick[@]}" --sky 1,1,1 "${sun[@]}"
+expect 0 '' bake ok.gltf -o lit/ "${quick[@]}" --sky 3000,3000,3000 "${sun[@]}"
+grep -q dark-sky lit/report.json && complain 'a bright sky is said to be black'
 
 # The pictures of a bake are one stage, whose progress never falls.
 expect 0 '"stage":"views","fraction":1.0000' bake ok.gltf -o views --preset preview --samples 1 \
