@@ -8,6 +8,7 @@
 #include "base/check.h"
 #include "base/try.h"
 #include "post/lightmap.h"
+#include "post/texel_mean.h"
 
 namespace lumel {
 namespace {
@@ -25,49 +26,6 @@ void for_each_neighbour(const Lightmap& map, std::uint32_t x, std::uint32_t y, V
     }
 }
 
-// Mean of several texels' light, written over a texel. Sample counts are not averaged: a filled texel was not sampled.
-class Average {
-public:
-    void add(const Lightmap& map, std::size_t i) {
-        const RadianceSums& from = map.texels;
-        ++n_;
-        for (std::size_t l = 0; l < kLayerCount; ++l) {
-            for (std::size_t k = 0; k < kShCoefficients; ++k) layers_[l].sh[k] += from.layers[i][l].sh[k];
-            layers_[l].irradiance += from.layers[i][l].irradiance;
-        }
-        variance_ += from.variance[i];
-        bent_ += from.bent_normal[i];
-        sky_ += from.sky_visibility[i];
-        occlusion_ += from.ambient_occlusion[i];
-        albedo_ += map.surface.albedo[i];
-        emission_ += map.surface.emission[i];
-        normal_ += map.normal[i];
-    }
-    [[nodiscard]] bool empty() const { return n_ == 0; }
-    void store_light(RadianceSums& to, std::size_t i) const {
-        const float s = 1.0f / static_cast<float>(n_);
-        for (std::size_t l = 0; l < kLayerCount; ++l) {
-            for (std::size_t k = 0; k < kShCoefficients; ++k) to.layers[i][l].sh[k] = layers_[l].sh[k] * s;
-            to.layers[i][l].irradiance = layers_[l].irradiance * s;
-        }
-        to.variance[i] = variance_ * s;
-        to.bent_normal[i] = bent_ * s;
-        to.sky_visibility[i] = sky_ * s;
-        to.ambient_occlusion[i] = occlusion_ * s;
-    }
-    void store_surface(Lightmap& to, std::size_t i) const {
-        to.surface.albedo[i] = albedo_ * (1.0f / static_cast<float>(n_));
-        to.surface.emission[i] = emission_ * (1.0f / static_cast<float>(n_));
-        to.normal[i] = normalize_or(normal_, {0, 0, 1});
-    }
-
-private:
-    std::uint32_t n_ = 0;
-    std::array<LayerMoments, kLayerCount> layers_{};
-    Vec3 variance_{}, bent_{}, albedo_{}, emission_{}, normal_{};
-    float sky_ = 0.0f, occlusion_ = 0.0f;
-};
-
 struct Pixel {
     std::uint32_t x, y;
 };
@@ -75,12 +33,12 @@ struct Pixel {
 constexpr std::size_t kLookEvery = 4096;  // texels between two looks at whether the bake was cancelled
 
 // Mean of the 3x3 neighbours of one chart that have a value.
-Average average_around(const Lightmap& map, Pixel p, std::uint32_t chart) {
-    Average average;
+TexelMean mean_around(const Lightmap& map, Pixel p, std::uint32_t chart) {
+    TexelMean mean(map);
     for_each_neighbour(map, p.x, p.y, [&](std::uint32_t texel) {
-        if (map.coverage[texel] != Coverage::none && map.chart[texel] == chart) average.add(map, texel);
+        if (map.coverage[texel] != Coverage::none && map.chart[texel] == chart) mean.add(texel);
     });
-    return average;
+    return mean;
 }
 
 // Invalid texels take the mean of those neighbours of their chart that have a value, ring by ring inwards. Their
@@ -98,7 +56,7 @@ public:
             for (std::size_t k = 0; k < ring.size(); ++k) {
                 if (k % kLookEvery == 0 && context.cancelled()) return cancelled_error();
                 const std::uint32_t i = ring[k];
-                average_around(map_, pixel(i), map_.chart[i]).store_light(map_.texels, i);
+                mean_around(map_, pixel(i), map_.chart[i]).store_light(map_.texels, i);
             }
             for (const std::uint32_t i : ring) map_.coverage[i] = Coverage::filled;
             next.clear();
@@ -172,16 +130,12 @@ Status dilate_once(Lightmap& map, std::span<const std::uint32_t> readers, Contex
             map.chart.push_back(owner);
         }
     }
-    map.texels.resize(first + ring.size());
-    map.surface.albedo.resize(first + ring.size());
-    map.surface.emission.resize(first + ring.size());
-    map.normal.resize(first + ring.size());
-    map.coverage.resize(first + ring.size(), Coverage::none);
+    resize_texels(map, first + ring.size());
     for (std::size_t k = 0; k < ring.size(); ++k) {
         if (k % kLookEvery == 0 && context.cancelled()) return cancelled_error();
-        const Average average = average_around(map, ring[k], map.chart[first + k]);
-        average.store_light(map.texels, first + k);
-        average.store_surface(map, first + k);
+        const TexelMean mean = mean_around(map, ring[k], map.chart[first + k]);
+        mean.store_light(map.texels, first + k);
+        mean.store_surface(map, first + k);
     }
     for (std::size_t k = 0; k < ring.size(); ++k) {
         map.coverage[first + k] = Coverage::dilated;

@@ -25,23 +25,34 @@ void TexelMean::add(std::uint32_t texel) {
     coverage_ = std::max(coverage_, page_.coverage[texel]);
 }
 
-void TexelMean::store(Lightmap& to, std::size_t texel, std::uint32_t chart) const {
+void TexelMean::store_light(RadianceSums& to, std::size_t texel) const {
     const float s = 1.0f / static_cast<float>(n_);
     for (std::size_t l = 0; l < kLayerCount; ++l) {
-        for (std::size_t k = 0; k < kShCoefficients; ++k) to.texels.layers[texel][l].sh[k] = layers_[l].sh[k] * s;
-        to.texels.layers[texel][l].irradiance = layers_[l].irradiance * s;
+        for (std::size_t k = 0; k < kShCoefficients; ++k) to.layers[texel][l].sh[k] = layers_[l].sh[k] * s;
+        to.layers[texel][l].irradiance = layers_[l].irradiance * s;
     }
-    to.texels.variance[texel] = variance_ * (s * s);
-    to.texels.half_difference[texel] = difference_ * s;
-    to.texels.bent_normal[texel] = bent_ * s;
-    to.texels.sky_visibility[texel] = sky_ * s;
-    to.texels.ambient_occlusion[texel] = occlusion_ * s;
-    constexpr std::uint64_t kMost = 0xffffffffu;
-    to.texels.count[texel] = static_cast<std::uint32_t>(std::min(count_, kMost));
-    to.texels.open[texel] = static_cast<std::uint32_t>(std::min(open_, kMost));
+    to.variance[texel] = variance_ * s;
+    to.bent_normal[texel] = bent_ * s;
+    to.sky_visibility[texel] = sky_ * s;
+    to.ambient_occlusion[texel] = occlusion_ * s;
+}
+
+void TexelMean::store_surface(Lightmap& to, std::size_t texel) const {
+    const float s = 1.0f / static_cast<float>(n_);
     to.surface.albedo[texel] = albedo_ * s;
     to.surface.emission[texel] = emission_ * s;
     to.normal[texel] = normalize_or(normal_, any_normal_);  // of a sheet and its back they cancel
+}
+
+void TexelMean::store(Lightmap& to, std::size_t texel, std::uint32_t chart) const {
+    store_light(to.texels, texel);
+    store_surface(to, texel);
+    const float s = 1.0f / static_cast<float>(n_);
+    to.texels.variance[texel] = variance_ * (s * s);
+    to.texels.half_difference[texel] = difference_ * s;
+    constexpr std::uint64_t kMost = 0xffffffffu;
+    to.texels.count[texel] = static_cast<std::uint32_t>(std::min(count_, kMost));
+    to.texels.open[texel] = static_cast<std::uint32_t>(std::min(open_, kMost));
     to.coverage[texel] = coverage_;
     to.chart[texel] = chart;
 }

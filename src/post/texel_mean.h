@@ -9,16 +9,19 @@
 
 namespace lumel {
 
-// The mean over some texels of a page, stored as a texel of another: moments, light, normals and surface are means, the
-// variance that of a mean of independent texels, coverage the best of theirs, counts sums.
+// The mean over some texels of a page: of light, moments, normals and surface.
 class TexelMean {
 public:
     explicit TexelMean(const Lightmap& page) : page_(page) {}
 
     void add(std::uint32_t texel);
     [[nodiscard]] bool empty() const { return n_ == 0; }
-    // Precondition: not empty.
+    // The following need some texels. As one texel of another page: the variance is that of a mean of independent
+    // texels, coverage the best of theirs, counts are sums.
     void store(Lightmap& to, std::size_t texel, std::uint32_t chart) const;
+    // As the light of one beside them, which was not sampled: it varies as they do, and counts are left alone.
+    void store_light(RadianceSums& to, std::size_t texel) const;
+    void store_surface(Lightmap& to, std::size_t texel) const;
 
 private:
     const Lightmap& page_;
