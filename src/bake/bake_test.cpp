@@ -1,68 +1,29 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdlib>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
 
-#include "base/hash.h"
 #include "chart/atlas_record.h"
 #include "chart/chart_set.h"
 #include "lumel/bake.h"
-#include "path/gather_page.h"
-#include "path/path_integrator.h"
 #include "post/lightmap.h"
+#include "support/small_bake.h"
 #include "support/traced_scene.h"
 #include "texel/texel_buffer.h"
 
 namespace lumel {
 namespace {
 
-BakeOptions small_options() {
-    BakeOptions options;
-    options.texels_per_metre = 8;
-    options.samples = 100;  // not a multiple of the wavefront
-    options.bounces = 8;    // from which on cells are used
-    return options;
-}
-
-void hash_sums(Hasher& hasher, const RadianceSums& sums) {
-    hasher.array(std::span(std::as_const(sums.layers)));
-    hasher.array(std::span(std::as_const(sums.variance)));
-    hasher.array(std::span(std::as_const(sums.bent_normal)));
-    hasher.array(std::span(std::as_const(sums.sky_visibility)));
-    hasher.array(std::span(std::as_const(sums.ambient_occlusion)));
-    hasher.array(std::span(std::as_const(sums.open)));
-    hasher.array(std::span(std::as_const(sums.count)));
-}
-
-std::string bake_hash(unsigned threads, const BakeOptions& options, BakeReport* report = nullptr) {
-    Context context(threads);
-    Hasher hasher;
-    BakeSink sink;
-    sink.layout = [&](const WorldGeometry&, const ChartSet&, const Atlas& atlas) {
-        for (const ChartPlacement& p : atlas.placements) hasher.pod(p.page).pod(p.offset.x).pod(p.offset.y);
-        return success();
-    };
-    sink.page = [&](const Lightmap& map) {
-        hash_sums(hasher, map.texels);
-        return success();
-    };
-    const Result<BakeReport> result = bake(test::room(), options, sink, context);
-    EXPECT_TRUE(result.ok()) << (result.ok() ? "" : result.error().text());
-    if (report && result.ok()) *report = *result;
-    return hasher.finish().hex();
-}
-
 // Every point of a surface finds, in the page and in each mip, light of its own chart in all texels that a lookup there
 // weighs: the declared filter by its definition, at points spread over every triangle.
 TEST(Bake, LookupsInMipsReadOneChart) {
     constexpr std::uint32_t kMips = 3;
     for (const LookupFilter filter : {LookupFilter::bilinear, LookupFilter::bicubic}) {
-        BakeOptions options = small_options();
+        BakeOptions options = test::small_options();
         options.samples = 1;
         options.mips = kMips;
         options.filter = filter;
@@ -120,228 +81,6 @@ TEST(Bake, LookupsInMipsReadOneChart) {
     }
 }
 
-TEST(Bake, MipsHaveTheSameBitsForOneAndEightThreads) {
-    BakeOptions options = small_options();
-    options.samples = 4;
-    options.mips = 2;
-    EXPECT_EQ(bake_hash(1, options), bake_hash(8, options));
-}
-
-TEST(Bake, TheSameBitsForOneTwoAndEightThreads) {
-    BakeReport report;
-    const std::string one = bake_hash(1, small_options(), &report);
-    ASSERT_GT(report.texels, 500u);
-    ASSERT_GT(report.cells, 10u);
-    ASSERT_GT(report.mean_irradiance[0], 0.1);
-    EXPECT_LT(std::fabs(report.cell_bias), 0.02 + 4.0 * report.cell_bias_error);
-    EXPECT_EQ(one, bake_hash(2, small_options()));
-    EXPECT_EQ(one, bake_hash(8, small_options()));
-    BakeOptions other = small_options();
-    other.seed = 2;
-    EXPECT_NE(one, bake_hash(2, other)) << "the hash sees nothing";
-}
-
-TEST(Bake, SinglePathsTellNothingOfTheirError) {
-    for (const std::uint32_t samples : {1u, 2u}) {
-        BakeOptions options = small_options();
-        options.texels_per_metre = 2;
-        options.samples = samples;
-        BakeReport report;
-        bake_hash(1, options, &report);
-        EXPECT_EQ(std::isnan(report.estimated_nrmse), samples == 1) << report.estimated_nrmse;
-    }
-}
-
-TEST(Bake, TheSameBitsForTheSeedsStopRule) {
-    BakeOptions options = small_options();
-    options.samples = 640;
-    options.stop = StopRule::flux;
-    BakeReport report;
-    EXPECT_EQ(bake_hash(1, options, &report), bake_hash(2, options));
-    EXPECT_LT(report.samples, report.texels * 640) << "no texel stopped early";
-    EXPECT_GE(report.samples, report.texels * 64) << "the rule is looked at no sooner than at 10 %";
-}
-
-TEST(Bake, TheSameBitsForTexelsThatStopAtAnError) {
-    BakeOptions options = small_options();
-    options.samples = 1024;
-    options.stop = StopRule::error;
-    options.error = 0.1;
-    BakeReport report;
-    EXPECT_EQ(bake_hash(1, options, &report), bake_hash(2, options));
-    EXPECT_LT(report.samples, report.texels * 1024) << "no texel stopped early";
-    EXPECT_GT(report.share_within_error, 0.5);
-    EXPECT_LE(report.share_within_error, 1.0);
-    EXPECT_LE(report.share_within_error + report.share_unlit + report.share_out_of_samples, 1.0 + 1e-12);
-    options.stop = StopRule::fixed;
-    options.samples = 64;
-    bake_hash(1, options, &report);
-    EXPECT_TRUE(std::isnan(report.share_within_error)) << "nothing was to be reached";
-}
-
-TEST(Bake, TheSamplesThatFittedATimeGiveTheSameBits) {
-    BakeOptions options = small_options();
-    options.samples = 512;
-    options.time_seconds = 1e-3;
-    BakeReport report;
-    const std::string shortest = bake_hash(2, options, &report);
-    EXPECT_EQ(report.samples_per_texel, 32u);
-    options.time_seconds = 1e6;
-    bake_hash(2, options, &report);
-    EXPECT_EQ(report.samples_per_texel, 512u) << "the samples asked for are the most";
-    options.time_seconds = 0.0;
-    options.samples = 32;
-    EXPECT_EQ(bake_hash(1, options), shortest);
-}
-
-TEST(Bake, AnySplitOfTheTexelsGivesTheSameBits) {
-    Context context(2);
-    const test::TracedScene traced(test::room(), context);
-    const Scene& scene = traced.scene;
-    const WorldGeometry& geometry = traced.geometry;
-    const Transport& transport = traced.transport;
-    ChartOptions chart_options;
-    chart_options.texels_per_metre = 8;
-    const ChartSet charts = make_charts(scene, geometry, chart_options, context).value();
-    const Atlas atlas = make_atlas(scene, geometry, charts, chart_options, context).value();
-    const auto by_page = triangles_by_page(scene, geometry, charts, atlas);
-    const TexelBuffer texels = rasterize_page(scene, geometry, charts, atlas, 0, by_page[0], context).value();
-    PathOptions path;
-    path.samples = 96;
-    path.bounces = 4;
-    path.guided = true;
-
-    const auto hash_of = [&](const RadianceSums& sums) {
-        Hasher hasher;
-        hash_sums(hasher, sums);
-        return hasher.finish().hex();
-    };
-    const RadianceSums whole = gather_page(texels, charts, atlas, transport, path, 0, texels.size(), context).value();
-    for (const std::size_t shards : {3u, 7u}) {
-        RadianceSums merged;
-        merged.resize(texels.size());
-        for (std::size_t s = 0; s < shards; ++s) {
-            const std::size_t first = texels.size() * s / shards, last = texels.size() * (s + 1) / shards;
-            const RadianceSums part =
-                gather_page(texels, charts, atlas, transport, path, first, last - first, context).value();
-            for (std::size_t i = first; i < last; ++i) {
-                merged.layers[i] = part.layers[i];
-                merged.variance[i] = part.variance[i];
-                merged.bent_normal[i] = part.bent_normal[i];
-                merged.sky_visibility[i] = part.sky_visibility[i];
-                merged.ambient_occlusion[i] = part.ambient_occlusion[i];
-                merged.open[i] = part.open[i];
-                merged.count[i] = part.count[i];
-            }
-        }
-        EXPECT_EQ(hash_of(whole), hash_of(merged)) << shards << " shards";
-    }
-}
-
-TEST(Lighting, SkyIntensityAndRotationActOnTheScenesOwnSky) {
-    Scene scene = test::room();
-    BakeOptions options;
-    options.sky.intensity = 2;
-    ASSERT_TRUE(apply_lighting(scene, options).ok());
-    EXPECT_EQ(scene.sky.color, (Vec3{0.8f, 1.2f, 2.0f}));
-
-    scene.sky.map = SkyMap{2, 1, {Vec3{1, 2, 3}, Vec3{4, 5, 6}}};
-    scene.sky.rotation = 0.25f;
-    options.sky.rotation_degrees = 90;
-    ASSERT_TRUE(apply_lighting(scene, options).ok());
-    EXPECT_EQ(scene.sky.map->radiance[1], (Vec3{8, 10, 12}));
-    EXPECT_FLOAT_EQ(scene.sky.rotation, 0.25f + 1.57079633f);
-}
-
-TEST(Lighting, SkyOptionsWithoutASkyToActOnAreUsageErrors) {
-    const SkyMap map{2, 1, {Vec3{1, 1, 1}, Vec3{1, 1, 1}}};
-    struct Case {
-        const char* option;
-        void (*set)(SkyOptions&);
-        bool constant_will_do;
-    };
-    const Case cases[] = {
-        {"--sky-intensity", [](SkyOptions& sky) { sky.intensity = 3; }, true},
-        {"--sky-rotation", [](SkyOptions& sky) { sky.rotation_degrees = 10; }, false},
-        {"--sky-blur", [](SkyOptions& sky) { sky.blur_degrees = 10; }, false},
-        {"--sky-extract-sun", [](SkyOptions& sky) { sky.extract_sun = true; }, false},
-    };
-    for (const Case& c : cases) {
-        BakeOptions options;
-        c.set(options.sky);
-        const auto names_the_option = [&](const Status& status) {
-            return !status.ok() && status.error().code == ErrorCode::usage &&
-                   status.error().message.find(c.option) == 0;
-        };
-        Scene none = test::room();
-        none.sky = {};
-        EXPECT_TRUE(names_the_option(apply_lighting(none, options))) << c.option;
-        Scene constant = test::room();  // of the scene, then of the options
-        EXPECT_EQ(apply_lighting(constant, options).ok(), c.constant_will_do) << c.option;
-        options.sky.color = Vec3{1, 1, 1};
-        EXPECT_EQ(apply_lighting(none, options).ok(), c.constant_will_do) << c.option;
-        if (options.sky.extract_sun) continue;  // this map has none
-        options.sky.color.reset();
-        none.sky.map = map;
-        EXPECT_TRUE(apply_lighting(none, options).ok()) << c.option;
-    }
-}
-
-TEST(Lighting, TheOptionsSkyReplacesTheScenes) {
-    Scene scene = test::room();
-    scene.sky.rotation = 0.25f;
-    BakeOptions options;
-    options.sky.color = Vec3{1, 2, 3};
-    options.sky.intensity = 2;
-    ASSERT_TRUE(apply_lighting(scene, options).ok());
-    EXPECT_EQ(scene.sky.color, (Vec3{2, 4, 6}));
-    EXPECT_EQ(scene.sky.rotation, 0.0f);
-}
-
-TEST(Lighting, TooBrightIsAnErrorThatNamesTheRemedy) {
-    for (const double intensity : {2e12, 3e38, 1e300}) {
-        Scene scene = test::room();
-        scene.sky.map = SkyMap{2, 1, {Vec3{1, 1, 1}, Vec3{1, 10, 1}}};
-        BakeOptions options;
-        options.sky.intensity = intensity;
-        options.sky.blur_degrees = 5;
-        const Status status = apply_lighting(scene, options);
-        ASSERT_FALSE(status.ok()) << intensity;
-        EXPECT_EQ(status.error().code, ErrorCode::invalid_input);
-        EXPECT_NE(status.error().text().find("--sky-intensity"), std::string::npos) << status.error().text();
-
-        scene = test::room();
-        BakeOptions sun;
-        sun.sun.direction = Vec3{0, -1, 0};
-        sun.sun.illuminance = intensity;
-        const Status bright_sun = apply_lighting(scene, sun);
-        ASSERT_FALSE(bright_sun.ok()) << intensity;
-        EXPECT_NE(bright_sun.error().text().find("--sun-direction"), std::string::npos) << bright_sun.error().text();
-    }
-}
-
-TEST(Lighting, TheSunsDirectionMayHaveAnyLength) {
-    for (const float length : {1e-30f, 1.0f, 1e30f}) {
-        Scene scene = test::room();
-        BakeOptions options;
-        options.sun.direction = Vec3{0, -3, 4} * length;
-        ASSERT_TRUE(apply_lighting(scene, options).ok()) << length;
-        EXPECT_NEAR(scene.lights.back().direction.y, -0.6f, 1e-6f) << length;
-        EXPECT_NEAR(scene.lights.back().direction.z, 0.8f, 1e-6f) << length;
-    }
-}
-
-TEST(Lighting, ASunOfNoLuxIsBlack) {
-    for (const double lux : {100000.0, 0.0}) {
-        Scene scene = test::room();
-        BakeOptions options;
-        options.sun.direction = Vec3{0, -1, 0};
-        if (lux == 0.0) options.sun.illuminance = 0.0;  // else as it is by default
-        ASSERT_TRUE(apply_lighting(scene, options).ok());
-        EXPECT_EQ(scene.lights.back().intensity, (Vec3{1, 1, 1} * float(lux)));
-    }
-}
-
 TEST(Bake, NoLightIsAnErrorThatNamesTheRemedy) {
     test::SceneBuilder b;
     const auto white = b.material({0.8f, 0.8f, 0.8f});
@@ -364,7 +103,7 @@ TEST(Bake, WarnsWhereNoLightReachesAnyTexel) {
         Context context(1);
         BakeSink sink{[](const auto&, const auto&, const auto&) { return success(); },
                       [](const auto&) { return success(); }};
-        ASSERT_TRUE(bake(b.build(), small_options(), sink, context).ok());
+        ASSERT_TRUE(bake(b.build(), test::small_options(), sink, context).ok());
         EXPECT_EQ(context.diagnostics.count("no-light"), height < 0.0f ? 1u : 0u);
     }
 }
@@ -386,7 +125,7 @@ TEST(Bake, TellsWhyTexelsAreNotWithinTheError) {
         },
         {}, NodeClass::occluder);
     b.light(LightShape::point).position = {2.0f, 1.0f, 0.5f};
-    BakeOptions options = small_options();
+    BakeOptions options = test::small_options();
     options.texels_per_metre = 32;
     options.samples = 256;
     options.stop = StopRule::error;
@@ -408,7 +147,7 @@ TEST(Bake, NamesNodesThatAreInsideOut) {
         b.object("crate", white, [](Mesh& m) { test::add_box(m, {0.5f, 0.3f, 0.5f}, {1, 0.8f, 1}, false); });
         b.light(LightShape::point).position = {1.5f, 1.5f, 1.5f};
         Context context(2);
-        ASSERT_TRUE(bake(b.build(), small_options(), no_sink(), context).ok());
+        ASSERT_TRUE(bake(b.build(), test::small_options(), no_sink(), context).ok());
         const auto names = [&](const char* code) {
             std::vector<std::string> out;
             for (const Diagnostic& d : context.diagnostics.all())
@@ -428,7 +167,7 @@ std::uint64_t megabytes_needed(const Error& error) {
 }
 
 TEST(Bake, TooLittleMemoryIsAnErrorThatSaysHowMuchIsNeeded) {
-    BakeOptions options = small_options();
+    BakeOptions options = test::small_options();
     options.max_memory_bytes = 1 << 20;
     Context context(1);
     const auto result = bake(test::room(), options, no_sink(), context);
@@ -449,7 +188,7 @@ TEST(Bake, TooLittleMemoryIsAnErrorThatSaysHowMuchIsNeeded) {
 
 // A density whose charts alone take more is an error before they are drawn, and says what to lower.
 TEST(Bake, ADensityThatNoMemoryHoldsIsNotDrawn) {
-    BakeOptions options = small_options();
+    BakeOptions options = test::small_options();
     options.texels_per_metre = 1e6;
     options.max_memory_bytes = 2 << 20;  // a wall of 4096 x 4096 texels takes as much
     Context context(1);
@@ -464,7 +203,7 @@ TEST(Bake, ADensityThatNoMemoryHoldsIsNotDrawn) {
 // With a layout to keep nothing is traced for it: its density is given, and new charts are those of `lumel atlas`.
 TEST(Bake, SealedChartsAreNotLookedForInALayoutThatIsKept) {
     const Scene scene = test::room();
-    BakeOptions options = small_options();
+    BakeOptions options = test::small_options();
     options.samples = 1;
     options.texels_per_metre = 0.0;
     options.resolution_width = options.resolution_height = 64;
@@ -493,7 +232,7 @@ TEST(Bake, SealedChartsAreNotLookedForInALayoutThatIsKept) {
 
 // Where the cells do not fit, the default bakes without them and says so; who asked for them is told what to do.
 TEST(Bake, CellsGiveWayToTheMemoryAllowed) {
-    BakeOptions options = small_options();
+    BakeOptions options = test::small_options();
     options.texels_per_metre = 60;
     const auto run = [&](Integrator integrator, std::uint64_t megabytes) {
         options.integrator = integrator;
@@ -522,7 +261,7 @@ TEST(Bake, CellsGiveWayToTheMemoryAllowed) {
 
 // Pages shrink until they fit, and the warnings are those of the layout that is used.
 TEST(Bake, PagesShrinkToTheMemoryAllowed) {
-    BakeOptions options = small_options();
+    BakeOptions options = test::small_options();
     options.texels_per_metre = 200;
     options.samples = 1;
     options.bounces = 0;
@@ -556,7 +295,7 @@ TEST(Bake, PagesShrinkToTheMemoryAllowed) {
 
 // Of a bake of several pages, with cells: every stage goes from its beginning to its end once, pages or not.
 TEST(Bake, ProgressOfEachStageOnlyGrows) {
-    BakeOptions options = small_options();
+    BakeOptions options = test::small_options();
     options.texels_per_metre = 40;
     options.max_page = 128;
     options.samples = 2;
@@ -585,7 +324,7 @@ TEST(Bake, ProgressOfEachStageOnlyGrows) {
 // The cells' layout, their view of each other, their gathering and solving are one stage: a bake that is cancelled at
 // any point of it ends there.
 TEST(Bake, CellsCanBeCancelledAnywhere) {
-    BakeOptions options = small_options();
+    BakeOptions options = test::small_options();
     options.integrator = Integrator::cells;
     for (const double at : {0.01, 0.1, 0.3, 0.95}) {
         Context context(2);
@@ -614,7 +353,7 @@ TEST(Bake, TheEndSeesWhatWasTraced) {
         report.stages.push_back({"views", 1.0, 1.0});
         return success();
     };
-    BakeOptions options = small_options();
+    BakeOptions options = test::small_options();
     Context context(2);
     const auto report = bake(test::room(), options, sink, context);
     ASSERT_TRUE(report.ok()) << report.error().text();
@@ -632,7 +371,7 @@ TEST(Bake, CancelledBakesStopAndSaySo) {
                       return success();
                   },
                   [](const auto&) { return success(); }};
-    const auto result = bake(test::room(), small_options(), sink, context);
+    const auto result = bake(test::room(), test::small_options(), sink, context);
     ASSERT_FALSE(result.ok());
     EXPECT_EQ(result.error().code, ErrorCode::cancelled);
 }

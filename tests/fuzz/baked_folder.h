@@ -78,4 +78,9 @@ inline const BakedFolder& baked_folder() {
     return the_one;
 }
 
+// Its scene.glb begins the corpus of those who change it.
+inline void seed_baked_scene(int argc, char** argv) {
+    seed_corpus(argc, argv, {read_file(baked_folder().folder / kSceneFile, 1 << 20).value()});
+}
+
 }  // namespace lumel::fuzz

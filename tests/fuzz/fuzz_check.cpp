@@ -10,7 +10,7 @@
 using namespace lumel;
 
 extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
-    fuzz::seed_corpus(*argc, *argv, {read_file(fuzz::baked_folder().folder / kSceneFile, 1 << 20).value()});
+    fuzz::seed_baked_scene(*argc, *argv);
     return 0;
 }
 
