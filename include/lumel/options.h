@@ -52,7 +52,7 @@ enum class StopRule : std::uint8_t {
 
 // Where the paths of a texel end.
 enum class Integrator : std::uint8_t {
-    automatic,  // cells from 32 samples per texel and 8 bounces on, else paths
+    automatic,  // cells from 8 samples per texel and 8 bounces on, else paths
     cells,      // at surface cells, which know the bounces beyond (docs/stages/cells.md)
     paths,      // by chance or at the last bounce: brute force, for truth
 };

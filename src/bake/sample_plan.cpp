@@ -15,8 +15,8 @@
 namespace lumel {
 namespace {
 
-constexpr std::uint32_t kFewestSamplesForCells = 32;  // fewer cost less than the cells would
-constexpr std::uint32_t kFewestBouncesForCells = 8;   // fewer are counted to the last, which cells do not
+constexpr std::uint32_t kFewestSamplesForCells = 8;  // fewer cost less than the cells would
+constexpr std::uint32_t kFewestBouncesForCells = 8;  // fewer are counted to the last, which cells do not
 
 bool uses_cells(const BakeOptions& options, const PathOptions& path) {
     if (path.bounces == 0) return false;
@@ -38,7 +38,7 @@ struct CellCost {
     [[nodiscard]] double seconds(const Atlas& atlas, std::uint32_t samples) const {
         const double finer = edge / texels_per_cell(atlas, samples);
         const double count = cells * finer * finer;
-        return count * static_cast<double>(links_per_cell(static_cast<std::size_t>(count))) * seconds_per_path;
+        return count * static_cast<double>(links_per_cell(static_cast<std::size_t>(count), samples)) * seconds_per_path;
     }
 };
 
@@ -68,7 +68,7 @@ Result<std::uint32_t> samples_within_time(const TimePlan& plan, const BakeOption
         LUMEL_TRY(cells, make_lit_cells(plan.charts, plan.atlas, transport, trial_path, context));
         const auto count = std::max<std::size_t>(1, cells->size());
         cost = {static_cast<double>(count), texels_per_cell(plan.atlas, kFewestTimedSamples),
-                trial.seconds() / static_cast<double>(count * links_per_cell(count))};
+                trial.seconds() / static_cast<double>(count * links_per_cell(count, kFewestTimedSamples))};
         through.cells = &*cells;
         trial_path.guided = trial_path.lights_learned = options.guide;
     }

@@ -49,7 +49,7 @@ Result<SurfaceCells> make_lit_cells(const ChartSet& charts, const Atlas& atlas, 
     const PathIntegrator integrator(into_cells, gathering);
     std::vector<PathIntegrator::WorkspacePtr> workspaces(context.threads());
     for (auto& workspace : workspaces) workspace = integrator.make_workspace();
-    const std::size_t links_each = links_per_cell(cells.size());
+    const std::size_t links_each = links_per_cell(cells.size(), path.samples);
     std::vector<CellLink> links(cells.size() * links_each);
     std::vector<CellGather> gathers(cells.size());
     const std::uint64_t rays_before = transport.tracer.statistics().rays;
