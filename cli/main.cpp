@@ -1,5 +1,6 @@
 // lumel: command-line baker for glTF scenes. Exit codes: 0 done, 1 failed, 2 usage.
 #include <algorithm>
+#include <cstdio>
 #include <string_view>
 #include <vector>
 
@@ -46,6 +47,12 @@ int usage_error(const CLI::App& app, const CLI::ParseError& error, int argc, cha
     return fail({ErrorCode::usage, message, {}, "commands: " + commands + "; see lumel --help"}, {});
 }
 
+// What was printed is not all there: a full disk, or a reader that is gone.
+int lost_output() {
+    std::fprintf(stderr, "lumel: error: standard output: cannot be written (give it room, or a reader)\n");
+    return kFailed;
+}
+
 }  // namespace
 }  // namespace lumel::cli
 
@@ -81,6 +88,9 @@ int main(int argc, char** argv) {
         return app.exit(error);  // --help and --version come this way too
     }
     for (const Command& command : commands)
-        if (command.app->parsed()) return command.run();
+        if (command.app->parsed()) {
+            const int code = command.run();
+            return std::fflush(stdout) == 0 && std::ferror(stdout) == 0 ? code : lost_output();
+        }
     return kUsage;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "base/try.h"
 #include "light/light_set.h"
@@ -63,7 +64,14 @@ Status apply_lighting(Scene& scene, const BakeOptions& options) {
     scene.sky.rotation += static_cast<float>(options.sky.rotation_degrees) * kRadians;
     LUMEL_TRY_STATUS(validate_lighting(scene));
     if (options.sky.extract_sun) {
-        LUMEL_TRY(ExtractedSun extracted, extract_sun(*scene.sky.map));
+        Result<ExtractedSun> found = extract_sun(*scene.sky.map);
+        if (!found.ok()) {
+            Error error = found.error();
+            error.where = options.sky.file.empty() ? scene.source : options.sky.file;
+            error.remedy = "leave out --sky-extract-sun, or give the sun apart with --sun-direction";
+            return error;
+        }
+        ExtractedSun extracted = std::move(found).value();
         scene.sky.map = std::move(extracted.sky);
         // The map's frame turned into the world's.
         const auto [s, c] = sincos_turn(scene.sky.rotation * kInvTwoPi);

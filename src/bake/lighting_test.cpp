@@ -2,6 +2,7 @@
 
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "lumel/bake.h"
 #include "support/traced_scene.h"
@@ -67,6 +68,18 @@ TEST(Lighting, TheOptionsSkyReplacesTheScenes) {
     ASSERT_TRUE(apply_lighting(scene, options).ok());
     EXPECT_EQ(scene.sky.color, (Vec3{2, 4, 6}));
     EXPECT_EQ(scene.sky.rotation, 0.0f);
+}
+
+TEST(Lighting, AMapWithoutASunToExtractIsNamed) {
+    Scene scene = test::room();
+    scene.sky.map = SkyMap{16, 8, std::vector<Vec3>(128, {1, 1, 1})};
+    BakeOptions options;
+    options.sky.file = "even.hdr";
+    options.sky.extract_sun = true;
+    const Status status = apply_lighting(scene, options);
+    ASSERT_FALSE(status.ok());
+    EXPECT_EQ(status.error().where, "even.hdr");
+    EXPECT_NE(status.error().remedy.find("--sky-extract-sun"), std::string::npos);
 }
 
 TEST(Lighting, TooBrightIsAnErrorThatNamesTheRemedy) {

@@ -1,6 +1,7 @@
 #include "io/bake_writer.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <optional>
 
 #include "base/check.h"
@@ -144,6 +145,7 @@ struct BakeWriter::Impl {
         WriteProgress progress(context, kPageWork + 3 * kPngWork);
         LUMEL_TRY(ManifestPage page, write_page_files(output.path(), lightmap, weights, progress));
         textures.push_back(lit_texture(lightmap, weights));
+        warn_of_cut_light(textures.back(), lightmap.page);
         progress.add(3 * kPngWork);
         page.display_strength = textures.back().strength;
         previews.push_back(preview_of(lightmap, weights, kPreviewEdge));
@@ -152,6 +154,16 @@ struct BakeWriter::Impl {
             page.files.push_back({kind, "8-bit"});
         pages.push_back(std::move(page));
         return success();
+    }
+
+    void warn_of_cut_light(const LitTexture& texture, std::uint32_t page) const {
+        if (texture.cut_texels == 0) return;
+        char where[80];
+        std::snprintf(where, sizeof where, "page %u, up to %.1f times", page, static_cast<double>(texture.cut_ratio));
+        context.diagnostics.add("display-cut",
+                                "The 8-bit texture of scene.glb shows these texels darker than they are baked, so that "
+                                "all others keep their codes; the .exr files have their light",
+                                where, texture.cut_texels);
     }
 
     [[nodiscard]] Status write_scene() const {

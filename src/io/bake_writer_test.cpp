@@ -271,8 +271,29 @@ TEST(LitTexture, LampsStandOutButDoNotDarkenTheRest) {
     const auto image = decode_image(texture.png, "texture");
     ASSERT_TRUE(image.ok());
     EXPECT_EQ(image->data[0], 1.0f);
-    EXPECT_EQ(image->data[1], 1.0f);
+    EXPECT_NEAR(srgb_decode(image->data[1]), 0.5f, 0.01f) << "what is cut keeps its colour";
     EXPECT_LT(image->data[2], 0.1f);
+    EXPECT_EQ(texture.cut_texels, 0u) << "a lamp's own light is cut without a word";
+}
+
+TEST(LitTexture, MakesRoomForPatchesOfSunAndTellsWhatItCuts) {
+    Lightmap map = made_up_page(0, 30, 30);
+    const auto shine = [&](float times) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            map.texels.layers[0][0].irradiance[c] = c == 2 ? times * 1.11f * 3 * 599 : 0.0f;
+            map.surface.albedo[0] = {1, 1, 1};
+        }
+        return lit_texture(map, kAll);
+    };
+    // Of 600 texels the 599th is the measure; beside it now stands the 600th, and the patch is above both.
+    const float usual = 1.11f * 3 * 600;
+    const LitTexture bright = shine(3.0f);
+    EXPECT_NEAR(bright.strength, 3 * 1.11 * 3 * 599, 0.01 * usual);
+    EXPECT_EQ(bright.cut_texels, 0u);
+    const LitTexture cut = shine(8.0f);
+    EXPECT_NEAR(cut.strength, 4 * usual, 0.01 * usual);
+    EXPECT_EQ(cut.cut_texels, 1u);
+    EXPECT_NEAR(cut.cut_ratio, 2.0f, 0.01f);
 }
 
 TEST(LitTexture, ABlackPageHasAUsableStrength) {

@@ -26,6 +26,9 @@ namespace lumel {
 struct LitTexture {
     std::vector<std::byte> png;  // RGB8 in sRGB code: albedo x E/pi (plus the surface's own emission) over `strength`
     float strength = 1.0f;
+    // Reflected light that is too bright for it: how many texels it was cut in, and how many times the brightest was.
+    std::uint64_t cut_texels = 0;
+    float cut_ratio = 1.0f;
 };
 
 struct GltfWriteInput {

@@ -255,11 +255,12 @@ private:
     ManifestPage out_;
 };
 
-// Twice the brightest reflected light but for the last thousandth, or the brightest of all where that is less:
-// fireflies and lamps do not set the scale of 8 bits, and lamps still stand out.
+// What 8 bits are scaled by, of the brightest reflected light but for the last thousandth: twice that, so that lamps
+// stand out, and up to four times where the last thousandth needs it (a patch of sun); more would leave too few codes
+// for the rest. The brightest of all where that is less.
 float display_strength(const std::vector<Vec3>& reflected, float brightest) {
     constexpr double kFraction = 0.999;
-    constexpr float kHeadroom = 2.0f;
+    constexpr float kHeadroom = 2.0f, kMostHeadroom = 4.0f;
     std::vector<float> peaks;
     peaks.reserve(reflected.size());
     for (const Vec3& v : reflected)
@@ -267,7 +268,8 @@ float display_strength(const std::vector<Vec3>& reflected, float brightest) {
     if (peaks.empty()) return brightest > 0.0f ? brightest : 1.0f;
     const auto at = peaks.begin() + static_cast<std::ptrdiff_t>(kFraction * static_cast<double>(peaks.size() - 1));
     std::nth_element(peaks.begin(), at, peaks.end());
-    return std::min(kHeadroom * *at, brightest);
+    const float usual = *at, most = *std::max_element(at, peaks.end());
+    return std::min(std::clamp(most, kHeadroom * usual, kMostHeadroom * usual), brightest);
 }
 
 }  // namespace
@@ -279,6 +281,7 @@ Result<ManifestPage> write_page_files(const std::filesystem::path& folder, const
 }
 
 LitTexture lit_texture(const Lightmap& map, const LayerWeights& weights) {
+    constexpr float kCutUnseen = 0.05f;
     std::vector<Vec3> light(map.texels.size());
     for (std::size_t t = 0; t < light.size(); ++t) {
         const auto& layers = map.texels.layers[t];
@@ -295,7 +298,13 @@ LitTexture lit_texture(const Lightmap& map, const LayerWeights& weights) {
     for (std::size_t i = 0; i < map.texel_at.size(); ++i) {
         const std::uint32_t t = map.texel_at[i];
         if (t == kNone) continue;
-        const Vec3 value = (light[t] + map.surface.emission[t]) / out.strength;
+        Vec3 value = (light[t] + map.surface.emission[t]) / out.strength;
+        if (max_component(light[t]) > out.strength * (1.0f + kCutUnseen)) {
+            ++out.cut_texels;
+            out.cut_ratio = std::max(out.cut_ratio, max_component(light[t]) / out.strength);
+        }
+        // What is brighter keeps its colour.
+        if (const float peak = max_component(value); peak > 1.0f && std::isfinite(peak)) value = value / peak;
         for (std::size_t c = 0; c < 3; ++c) pixels[3 * i + c] = srgb8(value[c]);
     }
     out.png = encode_png(map.width, map.height, 3, pixels);

@@ -60,6 +60,12 @@ expect 0 '[codes]' compare view.png view.png
 "$lumel" compare view.exr view.pfm >out.txt 2>err.txt || complain "compare view.exr view.pfm: exit code $?"
 [ -s err.txt ] && complain "compare view.exr view.pfm: says $(cat err.txt)"
 
+# A disk without room for what is printed.
+if [ -w /dev/full ]; then
+    "$lumel" info ok.gltf >/dev/full 2>err.txt && complain 'info is content with a full disk'
+    grep -q 'standard output: cannot be written' err.txt || complain "info does not say that its output is lost: $(cat err.txt)"
+fi
+
 # A sky in units of its own beside a sun in lux.
 sun=(--sun-direction 0,-1,0 --sun-illuminance 100000)
 expect 0 '[dark-sky, 1]: the sky lights a plane with 3.14 lux' bake ok.gltf -o lit/ "${quick[@]}" --sky 1,1,1 "${sun[@]}"
