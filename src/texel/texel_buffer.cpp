@@ -112,6 +112,16 @@ void texel_points(const TexelBuffer& texels, std::size_t texel, const Scene& sce
     }
 }
 
+SamplePoint representative_point(const TexelBuffer& texels, std::size_t texel, const Scene& scene,
+                                 const WorldGeometry& geometry, const ChartSet& charts, const Atlas& atlas) {
+    const std::uint32_t first = texels.first_triangle[texel], end = texels.first_triangle[texel + 1];
+    return TexelSamples(texels.x[texel], texels.y[texel])
+        .representative(std::span(&texels.triangles[first], end - first), texels.valid[texel],
+                        [&](std::uint32_t triangle) {
+                            return TexelTriangle(atlas.triangle_uv(charts, geometry, scene, triangle).texels);
+                        });
+}
+
 std::uint32_t sample_points(const TexelBuffer& texels, std::size_t texel, const Scene& scene,
                             const WorldGeometry& geometry, const ChartSet& charts, const Atlas& atlas,
                             std::span<SamplePoint, kSamplesPerTexel> out, Footprint footprint) {

@@ -82,6 +82,10 @@ Result<TexelBuffer> rasterize_page(const Scene& scene, const WorldGeometry& geom
                                    const Atlas& atlas, std::uint32_t page,
                                    std::span<const std::uint32_t> page_triangles, Context& context);
 
+// What TexelBuffer::position and normal are those of.
+SamplePoint representative_point(const TexelBuffer& texels, std::size_t texel, const Scene& scene,
+                                 const WorldGeometry& geometry, const ChartSet& charts, const Atlas& atlas);
+
 // Where the points of a texel lie: of a texel that is covered whole in kGatherFootprint of it, or in all of it; or
 // wherever bilinear lookups blend the texel in, a square of two texels, as densely as they weigh it.
 enum class Footprint : std::uint8_t { gather, whole, lookup };

@@ -216,6 +216,18 @@ TEST(TexelBuffer, WorldSizeIsTheLongerEdgeOfTheTexel) {
     for (const float size : texels->world_size) EXPECT_NEAR(size, std::sqrt(10.0f), 1e-4f);
 }
 
+// Asked for later it is the point that the buffer's position is of: whole texels, those on the rim, and a speck.
+TEST(TexelBuffer, RepresentativePointIsThatOfThePosition) {
+    FlatPage page = disc({20, 30}, 12, 17, 0.3f);
+    page.add({Vec2{50.4f, 50.4f}, {50.41f, 50.4f}, {50.4f, 50.41f}}, 1);  // between sample points
+    const BakedPage baked(page);
+    for (std::size_t i = 0; i < baked.texels.size(); ++i) {
+        const auto [triangle, b1, b2] =
+            representative_point(baked.texels, i, baked.world.scene, baked.world.geometry, baked.charts, baked.atlas);
+        EXPECT_EQ(baked.world.geometry.position(triangle, b1, b2), baked.texels.position[i]);
+    }
+}
+
 TEST(TexelBuffer, RepresentativeIsTheCentreOrTheNearestSample) {
     FlatPage page;
     page.add({Vec2{4.6f, 4.0f}, {8.0f, 4.0f}, {8.0f, 9.0f}});
