@@ -23,6 +23,7 @@
 #include "light/light_set.h"
 #include "math/normal_quantile.h"
 #include "path/cell_bias.h"
+#include "path/cell_noise.h"
 #include "path/gather_page.h"
 #include "path/light_cells.h"
 #include "path/mip_leaks.h"
@@ -209,6 +210,7 @@ struct PageBaker {
             smoothing.included = path.included;
             LUMEL_TRY_STATUS(denoise(texels, smoothing, sums, context));
         }
+        if (transport.cells) LUMEL_TRY_STATUS(add_cell_noise(texels, charts, atlas, transport, path, sums, context));
         const StageTimer timer(report, "post");
         const std::vector<std::uint32_t> readers = chart_ids(scene, charts, atlas, page);
         LUMEL_TRY(Lightmap map,

@@ -30,6 +30,19 @@ std::uint32_t neighbour_bit(std::int32_t dx, std::int32_t dy) {
     return static_cast<std::uint32_t>(index > 4 ? index - 1 : index);
 }
 
+constexpr std::uint32_t kBouncesOfNoise = 16;
+
+// What comes over the links of `paths` paths of a cell, of these values of others.
+Vec3 linked(std::span<const CellLink> links, std::span<const Vec3> values, std::uint32_t paths) {
+    Vec3 sum{};
+    for (const CellLink& link : links) {
+        if (link.from == kNone) continue;
+        const Vec3 from = values[link.from];
+        for (std::size_t c = 0; c < 3; ++c) sum[c] += static_cast<float>(link.weight[c]) * from[c];
+    }
+    return sum * (1.0f / (CellLink::kOne * static_cast<float>(std::max(1u, paths))));
+}
+
 // From one point to another; they must not coincide.
 Ray segment(Vec3 from, Vec3 move, float distance) {
     Ray ray;
@@ -143,12 +156,15 @@ std::uint32_t SurfaceCells::seen_from(const Place& place, std::int32_t dx, std::
     return cell != kNone && usable_[cell] ? cell : place.home;
 }
 
-Vec3 SurfaceCells::irradiance(const Place& place) const {
+Vec3 SurfaceCells::irradiance(const Place& place) const { return interpolate(irradiance_, place); }
+
+Vec3 SurfaceCells::noise(const Place& place) const { return interpolate(noise_, place); }
+
+Vec3 SurfaceCells::interpolate(std::span<const Vec3> values, const Place& place) const {
     const std::int32_t dx = place.offset.x < 0.0f ? -1 : 1, dy = place.offset.y < 0.0f ? -1 : 1;
     const float u = std::fabs(place.offset.x), v = std::fabs(place.offset.y);
-    return irradiance_[place.home] * ((1.0f - u) * (1.0f - v)) +
-           irradiance_[seen_from(place, dx, 0)] * (u * (1.0f - v)) +
-           irradiance_[seen_from(place, 0, dy)] * ((1.0f - u) * v) + irradiance_[seen_from(place, dx, dy)] * (u * v);
+    return values[place.home] * ((1.0f - u) * (1.0f - v)) + values[seen_from(place, dx, 0)] * (u * (1.0f - v)) +
+           values[seen_from(place, 0, dy)] * ((1.0f - u) * v) + values[seen_from(place, dx, dy)] * (u * v);
 }
 
 std::uint32_t SurfaceCells::pick(const Place& place, Vec2 jitter) const {
@@ -281,19 +297,13 @@ Status SurfaceCells::solve(std::span<const CellGather> gathers, std::span<const 
         if (sound) direct[i] = gathers[i].direct;
     }
     irradiance_ = direct;
+    std::uint32_t carried = 1;  // bounces
     std::vector<Vec3> next(size());
     std::vector<std::uint8_t> settled(size());
-    for (std::uint32_t bounce = 1; bounce < bounces; ++bounce) {
+    for (; carried < bounces; ++carried) {
         const bool done = parallel_for(context, size(), 256, [&](const ChunkRange& range) {
             for (std::size_t i = range.begin; i < range.end; ++i) {
-                Vec3 sum{};
-                for (const CellLink& link : links.subspan(i * links_each, links_each)) {
-                    if (link.from == kNone) continue;
-                    const Vec3 from = irradiance_[link.from];
-                    for (std::size_t c = 0; c < 3; ++c) sum[c] += static_cast<float>(link.weight[c]) * from[c];
-                }
-                const float paths = static_cast<float>(std::max(1u, gathers[i].traced));
-                next[i] = direct[i] + sum * (1.0f / (CellLink::kOne * paths));
+                next[i] = direct[i] + linked(links.subspan(i * links_each, links_each), irradiance_, gathers[i].traced);
                 // Cell by cell: a dim room beside a bright yard has its own pace.
                 settled[i] = max_component(next[i] - irradiance_[i]) <= kSettled * max_component(next[i]) ? 1 : 0;
             }
@@ -301,10 +311,68 @@ Status SurfaceCells::solve(std::span<const CellGather> gathers, std::span<const 
         if (!done) return cancelled_error();
         std::swap(irradiance_, next);
         if (std::find(settled.begin(), settled.end(), 0) == settled.end()) break;
-        context.report(kStage, static_cast<double>(bounce) / bounces);
+        context.report(kStage, static_cast<double>(carried) / bounces);
     }
+    if (!find_noise(gathers, links, carried, context)) return cancelled_error();
     context.report(kStage, 1.0);
     return success();
+}
+
+// A group's paths alone would have given I + e, where e = r + T e: r is what their first bounce changes and T are their
+// links. What gathers from cells takes e by all links. The variance of the mean of all groups is that of the groups'
+// own over their number.
+bool SurfaceCells::find_noise(std::span<const CellGather> gathers, std::span<const CellLink> links,
+                              std::uint32_t bounces, Context& context) {
+    const std::size_t links_each = size() == 0 ? 0 : links.size() / size();
+    noise_.assign(size(), {});
+    relative_noise_ = {};
+    if (links_each < kCellGroups) return true;
+    std::vector<Vec3> first(size()), error(size()), next(size()), sum(size());
+    const auto each_cell = [&](const auto& visit) {
+        return parallel_for(context, size(), 256, [&](const ChunkRange& range) {
+            for (std::size_t i = range.begin; i < range.end; ++i) visit(i);
+        });
+    };
+    for (std::size_t g = 0; g < kCellGroups; ++g) {
+        const std::size_t begin = (g * links_each + kCellGroups - 1) / kCellGroups;
+        const std::size_t end = ((g + 1) * links_each + kCellGroups - 1) / kCellGroups;
+        const auto of_group = [&](std::size_t i, std::span<const Vec3> values) {
+            return linked(links.subspan(i * links_each + begin, end - begin), values,
+                          static_cast<std::uint32_t>(end - begin));
+        };
+        const bool started = each_cell([&](std::size_t i) {
+            const bool sound = gathers[i].traced > 0 && is_finite(gathers[i].direct);
+            first[i] = sound ? gathers[i].direct_of_group[g] + of_group(i, irradiance_) - irradiance_[i] : Vec3{};
+        });
+        if (!started) return false;
+        error = first;
+        for (std::uint32_t bounce = 1; bounce < std::min(bounces, kBouncesOfNoise); ++bounce) {
+            if (!each_cell([&](std::size_t i) { next[i] = first[i] + of_group(i, error); })) return false;
+            std::swap(error, next);
+        }
+        const bool gathered = each_cell([&](std::size_t i) {
+            const Vec3 brought = linked(links.subspan(i * links_each, links_each), error, gathers[i].traced);
+            sum[i] += brought;
+            noise_[i] += brought * brought;
+        });
+        if (!gathered) return false;
+    }
+    std::array<double, 3> noise{}, light{};
+    for (std::size_t i = 0; i < size(); ++i) {
+        constexpr float kGroups{kCellGroups};
+        noise_[i] = max(noise_[i] - sum[i] * sum[i] * (1.0f / kGroups), Vec3{}) * (1.0f / (kGroups * (kGroups - 1.0f)));
+        if (!is_finite(noise_[i])) noise_[i] = {};
+        if (!usable_[i]) continue;
+        for (std::size_t c = 0; c < 3; ++c) {
+            noise[c] += double{noise_[i][c]};
+            light[c] += double{irradiance_[i][c]} * double{irradiance_[i][c]};
+        }
+    }
+    for (std::size_t c = 0; c < 3; ++c)
+        relative_noise_[c] = light[c] > 0.0 ? static_cast<float>(noise[c] / light[c]) : 0.0f;
+    for (std::size_t i = 0; i < size(); ++i)
+        noise_[i] = max(noise_[i], relative_noise_ * irradiance_[i] * irradiance_[i]);
+    return true;
 }
 
 }  // namespace lumel

@@ -30,10 +30,15 @@ struct CellLink {
     std::array<std::uint16_t, 3> weight{};   // up to 2
 };
 
+// The paths of a cell in groups, each evenly spread for itself: what they differ by tells the noise of all.
+inline constexpr std::size_t kCellGroups = 8;
+inline std::size_t cell_group(std::size_t path, std::size_t paths) { return path * kCellGroups / paths; }
+
 // What a cell gathered by paths of its own, apart from its links: light that reached it without another cell.
 struct CellGather {
-    Vec3 direct{};           // mean over the paths traced
-    std::uint32_t open = 0;  // paths that meet no back of a single-sided surface first
+    Vec3 direct{};                                    // mean over the paths traced
+    std::array<Vec3, kCellGroups> direct_of_group{};  // over those of each group
+    std::uint32_t open = 0;                           // paths that meet no back of a single-sided surface first
     std::uint32_t traced = 0;
 };
 
@@ -68,6 +73,13 @@ public:
     // I = E/pi about the vertex normal, W/(m^2 sr), all light that the bounces carry.
     [[nodiscard]] Vec3 irradiance(std::uint32_t cell) const { return irradiance_[cell]; }
 
+    // Of what a surface at that place gathers from cells: the variance of I that their own noise puts there, the same
+    // into all that gather around it. At least what it is on average, in proportion to the light. `place.home` is not
+    // kNone.
+    [[nodiscard]] Vec3 noise(const Place& place) const;
+    // That average: variance over the square of I.
+    [[nodiscard]] Vec3 relative_noise() const { return relative_noise_; }
+
     // Where a cell gathers: its sample points; nothing of cells that are not usable. Returns how many.
     std::uint32_t sample_points(std::uint32_t cell, const Scene& scene, const WorldGeometry& geometry,
                                 const ChartSet& charts, std::span<SamplePoint, kSamplesPerTexel> out) const;
@@ -76,7 +88,7 @@ public:
 
     // Sets the irradiance from what all cells gathered: `gathers` of each, `links` as many for each. Bounces are
     // iterations over the links, at no ray, until no cell changes by more than 1e-5. Cells most of whose paths met the
-    // backs of surfaces become unusable.
+    // backs of surfaces become unusable. Then the noise, by what each group of paths alone would change.
     // Progress: stage "cells". Error: cancelled.
     Status solve(std::span<const CellGather> gathers, std::span<const CellLink> links, std::uint32_t bounces,
                  Context& context);
@@ -99,6 +111,10 @@ private:
     [[nodiscard]] const Site& site(std::uint32_t cell) const {
         return sites_[is_back(cell) ? front_of_[cell - sites_.size()] : cell];
     }
+    // Of all four cells around a place, in the shares of bilinear interpolation.
+    [[nodiscard]] Vec3 interpolate(std::span<const Vec3> values, const Place& place) const;
+    bool find_noise(std::span<const CellGather> gathers, std::span<const CellLink> links, std::uint32_t bounces,
+                    Context& context);
     // The front cell at a texel of a page, if it belongs to that chart; else kNone.
     [[nodiscard]] std::uint32_t front_at(std::uint32_t page, std::int32_t x, std::int32_t y,
                                          std::uint32_t placement) const;
@@ -122,7 +138,8 @@ private:
     std::vector<Corners> triangles_;         // per world triangle
     std::vector<std::uint8_t> usable_;
     std::vector<std::uint8_t> open_;  // bit per neighbour: the two see each other
-    std::vector<Vec3> irradiance_;
+    std::vector<Vec3> irradiance_, noise_;
+    Vec3 relative_noise_{};
 };
 
 }  // namespace lumel

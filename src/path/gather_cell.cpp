@@ -1,5 +1,6 @@
 // Paths from the cells of the radiance cache: the light that reaches a cell by itself, and its links.
 #include <algorithm>
+#include <array>
 #include <bit>
 
 #include "base/check.h"
@@ -28,7 +29,9 @@ public:
     void back(std::uint32_t, float) { --gather_.open; }
     void free_path(std::uint32_t, Vec3, float, float, bool) {}
     void light(std::uint32_t lane, Layer, Vec3 direction, Vec3 value) {
-        sum_ += value * (std::max(0.0f, dot(direction, starts_[lane].normal)) * kInvPi);
+        const Vec3 brought = value * (std::max(0.0f, dot(direction, starts_[lane].normal)) * kInvPi);
+        sum_ += brought;
+        gather_.direct_of_group[cell_group(first_ + lane, links_.size())] += brought;
     }
     void link(std::uint32_t lane, Vec3 direction, float pdf, std::uint32_t cell, Vec3 share) {
         const float cosine = std::max(0.0f, dot(direction, starts_[lane].normal));
@@ -40,6 +43,11 @@ public:
     }
     void end() {
         if (gather_.traced > 0) gather_.direct = sum_ * (1.0f / static_cast<float>(gather_.traced));
+        std::array<std::uint32_t, kCellGroups> paths{};
+        for (std::size_t k = 0; k < links_.size(); ++k) ++paths[cell_group(k, links_.size())];
+        for (std::size_t g = 0; g < kCellGroups; ++g)
+            gather_.direct_of_group[g] =
+                gather_.direct_of_group[g] * (1.0f / static_cast<float>(std::max(1u, paths[g])));
     }
 
 private:
