@@ -1,44 +1,19 @@
 #include "render/picture.h"
 
 #include <array>
-#include <cmath>
 
 #include "base/cancelled.h"
 #include "base/parallel.h"
 #include "base/progress_parts.h"
 #include "base/try.h"
-#include "math/constants.h"
 #include "math/sampler.h"
+#include "render/camera_rays.h"
 
 namespace lumel {
 namespace {
 
 constexpr std::uint32_t kFilmPair = 0xf11u;    // pair of dimensions of the position in the pixel
-constexpr int kMaxCulledFaces = 32;            // back faces that one camera ray may pass through
 constexpr std::uint64_t kPictureKey = 0x9c7u;  // keeps pixels' point sets apart from texels'
-
-class Lens {
-public:
-    Lens(const Camera& camera, const PictureOptions& options)
-        : camera_(camera),
-          tan_y_(std::tan(0.5f * camera.vertical_fov)),
-          tan_x_(tan_y_ * static_cast<float>(options.width) / static_cast<float>(options.height)),
-          inverse_width_(1.0f / static_cast<float>(options.width)),
-          inverse_height_(1.0f / static_cast<float>(options.height)) {}
-
-    [[nodiscard]] Ray ray(float x, float y) const {
-        const Vec3 local{(2.0f * x * inverse_width_ - 1.0f) * tan_x_, (1.0f - 2.0f * y * inverse_height_) * tan_y_,
-                         -1.0f};
-        Ray out;
-        out.origin = camera_.transform.translation;
-        out.direction = normalize(transform_vector(camera_.transform, local));
-        return out;
-    }
-
-private:
-    const Camera& camera_;
-    float tan_y_, tan_x_, inverse_width_, inverse_height_;
-};
 
 // The picture of one worker: up to kWavefrontLanes camera rays of one pixel at a time.
 class PixelTracer {
@@ -95,17 +70,8 @@ private:
             rays_[i].alpha_key = sampler.hash(kFilmPair);
         }
         transport_.tracer.closest(std::span(rays_).first(n), std::span(hits_).first(n));
-        for (std::uint32_t i = 0; i < n; ++i)
-            for (int pass = 0; pass < kMaxCulledFaces && culled(hits_[i]); ++pass) {
-                rays_[i].tmin = hits_[i].t * (1.0f + 4.0f * kFloatEpsilon) + 1e-6f;
-                rays_[i].skip = hits_[i].triangle;
-                transport_.tracer.closest(std::span(rays_).subspan(i, 1), std::span(hits_).subspan(i, 1));
-            }
+        for (std::uint32_t i = 0; i < n; ++i) pass_culled(transport_.tracer, transport_.geometry, rays_[i], hits_[i]);
         baked_light_ = {};
-    }
-
-    [[nodiscard]] bool culled(const Hit& hit) const {
-        return !hit.missed() && hit.back_face && !(transport_.geometry.triangles[hit.triangle].flags & kDoubleSided);
     }
 
     // Emission or sky of sample i; queues its surface for path tracing unless the bake lights it.
@@ -113,7 +79,7 @@ private:
         const Hit& hit = hits_[i];
         if (hit.missed())
             return transport_.lights.has_sky() ? transport_.lights.sky(rays_[i].direction).radiance : Vec3{};
-        if (culled(hit)) return {};
+        if (is_culled(transport_.geometry, hit)) return {};
         const Vec3 albedo = transport_.surfaces.albedo(hit.triangle, hit.b1, hit.b2);
         const Vec3 emission = transport_.surfaces.emission(hit.triangle, hit.b1, hit.b2);
         if (baked_ && !hit.back_face)
@@ -172,7 +138,7 @@ Result<Image> render_picture(const Transport& transport, const PathOptions& path
                              const PictureOptions& options, const BakedLight* baked, Context& context) {
     Image image(options.width, options.height, 3);
     const PathIntegrator integrator(transport, path);
-    const Lens lens(camera, options);
+    const Lens lens(camera, options.width, options.height);
     std::vector<std::unique_ptr<PixelTracer>> tracers(context.threads());
     for (auto& tracer : tracers)
         tracer = std::make_unique<PixelTracer>(transport, integrator, path, lens, options, baked);
