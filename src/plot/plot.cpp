@@ -4,17 +4,15 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
-#include <cstring>
 
 #include "lumel/vec.h"
-#include "plot/plot_text.h"
+#include "plot/canvas.h"
 
 namespace lumel {
 namespace {
 
 constexpr std::uint32_t kPanelWidth = 720, kPanelHeight = 540;
 constexpr float kLeft = 112, kRight = 24, kTop = 44, kBottom = 60;  // margins of the frame in its panel
-constexpr float kTextScale = 2.0f;
 constexpr Vec3 kInk{0.15f, 0.15f, 0.17f}, kGrid{0.88f, 0.88f, 0.90f};
 
 // Colours that stay apart for colour-blind eyes (Okabe and Ito 2008).
@@ -25,62 +23,6 @@ constexpr std::array<Vec3, 7> kColors{{{0.00f, 0.45f, 0.70f},
                                        {0.80f, 0.47f, 0.65f},
                                        {0.34f, 0.71f, 0.91f},
                                        {0.30f, 0.30f, 0.30f}}};
-
-class Canvas {
-public:
-    Canvas(std::uint32_t width, std::uint32_t height) : image_(width, height, 3) {
-        std::fill(image_.data.begin(), image_.data.end(), 1.0f);
-    }
-
-    // A stroke with round ends; its edge is a pixel wide.
-    void line(Vec2 a, Vec2 b, float width, Vec3 color) {
-        const float reach = 0.5f * width + 1.0f;
-        for_pixels(
-            {std::min(a.x, b.x) - reach, std::min(a.y, b.y) - reach},
-            {std::max(a.x, b.x) + reach, std::max(a.y, b.y) + reach},
-            [&](Vec2 p) {
-                const Vec2 along = b - a;
-                const float squared = dot(along, along);
-                const float t = squared > 0.0f ? std::clamp(dot(p - a, along) / squared, 0.0f, 1.0f) : 0.0f;
-                const Vec2 off = p - (a + along * t);
-                return std::clamp(0.5f * width + 0.5f - std::sqrt(dot(off, off)), 0.0f, 1.0f);
-            },
-            color);
-    }
-    void dot_at(Vec2 p, float radius, Vec3 color) { line(p, p, 2.0f * radius, color); }
-    void box(Vec2 low, Vec2 high, Vec3 color) {
-        for_pixels(
-            low, high, [](Vec2) { return 1.0f; }, color);
-    }
-    // `at`: the upper left corner. Upwards: turned by a quarter, from `at` towards smaller y.
-    void text(Vec2 at, const std::string& words, Vec3 color, bool upwards = false) {
-        for (const TextBox& b : text_boxes(words)) {
-            const Vec2 low = b.low * kTextScale, high = b.high * kTextScale;
-            if (upwards)
-                box({at.x + low.y, at.y - high.x}, {at.x + high.y, at.y - low.x}, color);
-            else
-                box(at + low, at + high, color);
-        }
-    }
-    [[nodiscard]] Image finish() && { return std::move(image_); }
-
-private:
-    // Blends the colour over the pixels whose centres lie in the box, by coverage(centre).
-    template <class Coverage>
-    void for_pixels(Vec2 low, Vec2 high, const Coverage& coverage, Vec3 color) {
-        const auto bound = [](float v, std::uint32_t limit) {
-            return static_cast<std::uint32_t>(std::clamp(std::ceil(v - 0.5f), 0.0f, static_cast<float>(limit)));
-        };
-        for (std::uint32_t y = bound(low.y, image_.height); y < bound(high.y, image_.height); ++y)
-            for (std::uint32_t x = bound(low.x, image_.width); x < bound(high.x, image_.width); ++x) {
-                const float share = coverage({static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f});
-                float* pixel = image_.at(x, y);
-                for (std::size_t c = 0; c < 3; ++c) pixel[c] += (color[c] - pixel[c]) * share;
-            }
-    }
-
-    Image image_;
-};
 
 constexpr double kSlack = 1e-9;  // powers of ten are rounded
 
@@ -97,8 +39,6 @@ double step_above(double v) {
         if (step * decade_of(v) >= v * (1 - kSlack)) return step * decade_of(v);
     return 10.0 * decade_of(v);
 }
-
-float text_length(const std::string& words) { return kTextScale * text_width(words); }
 
 std::string tick_label(double value) {
     char text[32];
@@ -213,7 +153,8 @@ std::vector<double> log_ticks(LogRange range) {
 Image draw_plot(const std::vector<PlotPanel>& panels, std::size_t columns) {
     columns = std::clamp<std::size_t>(columns, 1, std::max<std::size_t>(1, panels.size()));
     const std::size_t rows = (panels.size() + columns - 1) / columns;
-    Canvas canvas(static_cast<std::uint32_t>(columns) * kPanelWidth, static_cast<std::uint32_t>(rows) * kPanelHeight);
+    Canvas canvas(static_cast<std::uint32_t>(columns) * kPanelWidth, static_cast<std::uint32_t>(rows) * kPanelHeight,
+                  {1, 1, 1});
     std::vector<std::string> names;
     for (std::size_t i = 0; i < panels.size(); ++i) {
         const PlotPanel& panel = panels[i];
