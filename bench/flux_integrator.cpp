@@ -301,7 +301,7 @@ void FluxIntegrator::gather_texel(const GatherSite& site, Workspace& w, Radiance
     // Lumel's points: even and odd samples are a set each. Halton's: all are one.
     const std::uint32_t sets = choices_.points == FluxPoints::sobol ? 2 : 1;
     const std::array<std::uint32_t, 2> set_keys{key, mix32(key)};
-    const std::size_t count = lumel_.choose_starts(site, key, *w.lumel, w.origins);
+    const std::size_t count = lumel_.choose_starts(site, key, *w.lumel, w.origins).count;
     const auto half_of_origins = static_cast<std::uint32_t>(count / 2);
     TexelSink sink(options_);
     const bool may_stop = options_.stop == StopRule::flux;

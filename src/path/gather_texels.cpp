@@ -77,7 +77,7 @@ void PathIntegrator::begin_texel(const GatherSite& site, Workspace& w, TexelStat
     texel.both_sides =
         options_.two_sided && (transport_.geometry.triangles[site.points[0].triangle].flags & kDoubleSided) != 0;
     const std::size_t n = texel.points =
-        texel.both_sides ? site.points.size() : choose_starts(site, key, w, texel.surfaces);
+        texel.both_sides ? site.points.size() : choose_starts(site, key, w, texel.surfaces).count;
     if (texel.both_sides) {
         std::fill(w.sides.begin(), w.sides.end(), std::uint8_t{0});
         surface_starts(site.points, std::span(w.sides).first(n), w, texel.surfaces);
@@ -96,8 +96,8 @@ void PathIntegrator::begin_texel(const GatherSite& site, Workspace& w, TexelStat
 
 // A texel cut by a wall gathers from all of its square that is seen from each other. One that nothing is seen of can
 // be read nevertheless, by lookups beside what hides it: it gathers from the points of those, as they weigh it.
-std::size_t PathIntegrator::choose_starts(const GatherSite& site, std::uint32_t key, Workspace& w,
-                                          std::span<SurfaceStart> starts) const {
+ChosenStarts PathIntegrator::choose_starts(const GatherSite& site, std::uint32_t key, Workspace& w,
+                                           std::span<SurfaceStart> starts) const {
     const VisibleStarts finder(transport_.tracer, transport_.geometry, w.rays, w.hits);
     const auto find = [&](std::size_t n, std::uint64_t valid, std::span<const std::uint32_t> triangles) {
         const auto enclosed_of_first = [&](std::size_t count) {
@@ -118,14 +118,16 @@ std::size_t PathIntegrator::choose_starts(const GatherSite& site, std::uint32_t 
     std::fill(w.sides.begin(), w.sides.end(), std::uint8_t{0});
     surface_starts(site.points, std::span(w.sides).first(n), w, starts);
     const VisibleStarts::Points usual{site.valid, site.triangles, site.texel_size};
-    if (!site.footprints || finder.all_open(usual, starts.first(n), mix32(key + 1))) return n;
+    if (!site.footprints || finder.all_open(usual, starts.first(n), mix32(key + 1))) return {n, StartsPlace::usual};
 
-    if (static_cast<std::size_t>(std::popcount(find(n, site.valid, site.triangles).best)) == n) return n;
+    if (static_cast<std::size_t>(std::popcount(find(n, site.valid, site.triangles).best)) == n)
+        return {n, StartsPlace::usual};
 
     const bool few_samples = options_.samples < kFewestSamplesForStrips;
     const std::size_t places = few_samples ? kFirstStrip : std::size(kFootprints);
     const std::uint32_t refinements = few_samples ? 0 : kMostRefinements;
     for (const FootprintToTry& place : std::span(kFootprints).first(places)) {
+        const StartsPlace of_footprint = place.footprint == Footprint::whole ? StartsPlace::part : StartsPlace::lookups;
         const auto read_part = [&](const FootprintPart& part) {
             site.footprints->read(site.texel, place.footprint, part, w.points);
             const auto points = std::span<const SamplePoint>(w.points.at).first(w.points.count);
@@ -144,14 +146,15 @@ std::size_t PathIntegrator::choose_starts(const GatherSite& site, std::uint32_t 
             found = now;
             found_in = *part;
             part = part_to_refine(*part, w.points.valid, found);
-            if (!part || attempt == refinements) return keep_starts(starts.first(w.points.count), found.best);
+            if (!part || attempt == refinements)
+                return {keep_starts(starts.first(w.points.count), found.best), of_footprint};
         }
         if (found.best == 0) continue;
         read_part(found_in);  // a finer look at it found nothing
-        return keep_starts(starts.first(w.points.count), found.best);
+        return {keep_starts(starts.first(w.points.count), found.best), of_footprint};
     }
     surface_starts(site.points, std::span(w.sides).first(n), w, starts);
-    return n;
+    return {n, StartsPlace::hidden};
 }
 
 bool PathIntegrator::gather_samples(std::uint32_t first, std::uint32_t last, bool learning, Workspace& w,

@@ -77,6 +77,18 @@ struct SurfaceStart {
     std::uint32_t sunlit = 0;    // bit k: reached by sun k, which has no size; known where many samples share the point
 };
 
+// Which points of a texel it gathers from.
+enum class StartsPlace : std::uint8_t {
+    usual,    // all of them are seen
+    part,     // those of its square that are seen: something stands on the rest
+    lookups,  // its square is hidden; those beside it, where lookups read the texel
+    hidden,   // nothing is seen there either: the usual ones, whose light no lookup shows
+};
+struct ChosenStarts {
+    std::size_t count = 0;
+    StartsPlace place = StartsPlace::usual;
+};
+
 // Points of a texel in other footprints than the one it gathers from if nothing is in its way.
 class FootprintSource {
 public:
@@ -129,10 +141,9 @@ public:
     void surface_starts(std::span<const SamplePoint> points, std::span<const std::uint8_t> back_side,
                         Workspace& workspace, std::span<SurfaceStart> out) const;
 
-    // Starts of a texel's points that lookups show, at the front of `starts`, and their number. `key`: of random
-    // directions.
-    std::size_t choose_starts(const GatherSite& site, std::uint32_t key, Workspace& workspace,
-                              std::span<SurfaceStart> starts) const;
+    // Starts of a texel's points that lookups show, at the front of `starts`. `key`: of random directions.
+    ChosenStarts choose_starts(const GatherSite& site, std::uint32_t key, Workspace& workspace,
+                               std::span<SurfaceStart> starts) const;
 
 private:
     struct TexelState;
