@@ -147,6 +147,12 @@ Result<Image> decode_exr(std::span<const std::byte> bytes, const std::string& wh
     });
 }
 
+Result<std::vector<std::string>> decode_exr_channel_names(std::span<const std::byte> bytes, const std::string& where) {
+    return with_exr(bytes, where, [](Imf::InputFile& file) -> Result<std::vector<std::string>> {
+        return channel_names(file.header());
+    });
+}
+
 Result<NamedChannels> decode_exr_channels(std::span<const std::byte> bytes, std::span<const std::string> names,
                                           const std::string& where) {
     return with_exr(bytes, where, [&](Imf::InputFile& file) -> Result<NamedChannels> {

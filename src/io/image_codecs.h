@@ -41,6 +41,7 @@ Result<Image> decode_hdr(std::span<const std::byte> bytes, const std::string& wh
 Result<Image> decode_pfm(std::span<const std::byte> bytes, const std::string& where);
 Result<Image> decode_pgm(std::span<const std::byte> bytes, const std::string& where);
 Result<Image> decode_exr(std::span<const std::byte> bytes, const std::string& where);
+Result<std::vector<std::string>> decode_exr_channel_names(std::span<const std::byte> bytes, const std::string& where);
 // Empty `names` means all.
 Result<NamedChannels> decode_exr_channels(std::span<const std::byte> bytes, std::span<const std::string> names,
                                           const std::string& where);

@@ -39,6 +39,8 @@ struct NamedChannels {
     std::vector<std::vector<float>> planes;
 };
 Result<NamedChannels> read_exr_channels(const std::filesystem::path& path, std::span<const std::string> names);
+// Names of all of its channels, sorted.
+Result<std::vector<std::string>> read_exr_channel_names(const std::filesystem::path& path);
 // Gets some rows of all channels, as many as its height says, and where they start; an error ends the reading.
 using ExrBand = std::function<Status(const NamedChannels& band, std::uint32_t first_row)>;
 

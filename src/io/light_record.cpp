@@ -7,6 +7,7 @@
 #include "io/light_json.h"
 #include "io/page_files.h"
 #include "io/read_manifest.h"
+#include "io/relative_path.h"
 #include "path/radiance_sums.h"
 
 namespace lumel {
@@ -15,20 +16,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t kMaxSkyFile = std::uint64_t{8} << 30;
-
-// Found again from wherever the two are moved to together. On another drive, say, no relative path leads there.
-std::string relative_to(const fs::path& folder, const fs::path& file) {
-    std::error_code error;
-    const fs::path out = fs::proximate(file, folder, error);
-    return (error ? file : out).generic_string();
-}
-
-// As short as it gets from the working directory.
-std::string found_from_here(const fs::path& folder, const std::string& file) {
-    std::error_code error;
-    const fs::path path = folder / file, out = fs::proximate(path, error);
-    return (error ? path : out).string();
-}
 
 Result<Vec3> color_or_white(const Json& object, const std::string& where) {
     LUMEL_TRY(const auto color, (numbers_or<3>(object, "color", {1, 1, 1}, where)));

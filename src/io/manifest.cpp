@@ -7,6 +7,7 @@
 #include "io/json_write.h"
 #include "io/layout_json.h"
 #include "io/light_json.h"
+#include "io/relative_path.h"
 
 namespace lumel {
 namespace {
@@ -93,6 +94,7 @@ Json manifest_json(const ManifestInput& in) {
     out["version"] = kVersion;
     out["generator"] = "Lumel";
     out["source"] = std::filesystem::path(in.scene.source).filename().string();
+    out["source_path"] = relative_to(in.folder, in.scene.source);
     out["input_hash"] = in.report.input_hash;
     out["geometry_hash"] = in.geometry_hash;
     out["scene"] = kSceneFile;

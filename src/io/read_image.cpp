@@ -97,6 +97,11 @@ Result<NamedChannels> read_exr_channels(const std::filesystem::path& path, std::
     return decode_exr_channels(bytes, names, path.string());
 }
 
+Result<std::vector<std::string>> read_exr_channel_names(const std::filesystem::path& path) {
+    LUMEL_TRY(const std::vector<std::byte> bytes, read_file(path, kMaxImageFile));
+    return decode_exr_channel_names(bytes, path.string());
+}
+
 Result<SkyMap> read_sky(const std::filesystem::path& path) {
     const std::string where = path.string();
     LUMEL_TRY(const std::vector<std::byte> bytes, read_file(path, kMaxImageFile));

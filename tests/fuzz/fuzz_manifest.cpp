@@ -1,11 +1,12 @@
 // Any text as the manifest of an output folder: the masters that it names, the light that it records, which lights a
-// scene, the layout that it records, which a level keeps; and as its report: the warnings.
+// scene, the layout that it records, which a level keeps, and whose texels are rasterised; and as its report: the warnings.
 #include <algorithm>
 #include <cstdio>
 
 #include "base/check.h"
 #include "fuzz/seed_corpus.h"
 #include "io/atlas_record_read.h"
+#include "io/bake_record.h"
 #include "io/light_json.h"
 #include "io/light_record.h"
 #include "io/master.h"
@@ -13,6 +14,7 @@
 #include "lumel/bake.h"
 #include "scene/world_geometry.h"
 #include "support/load_gltf.h"
+#include "texel/texel_buffer.h"
 
 namespace {
 
@@ -53,7 +55,10 @@ std::vector<std::byte> seed(const lumel::SkyOptions& sky, const lumel::SunOption
     char id[17];
     std::snprintf(id, sizeof id, "%016llx", static_cast<unsigned long long>(name.id));
     manifest["instances"].push_back({{"transform", {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}}, {"charts", {0, 1}}});
-    manifest["charts"] = {{"id", {id}}, {"page", {0}}, {"box", {{0, 2, 8, 8}}}};
+    manifest["geometry_hash"] = "0123456789abcdef";
+    manifest["source_path"] = "../scene.glb";
+    manifest["charts"] = {
+        {"id", {id}}, {"page", {0}}, {"scale", {{8.0, 8.0}}}, {"offset", {{0.0, 2.0}}}, {"box", {{0, 2, 8, 8}}}};
     manifest["options"] = {{"seams", true}};
     manifest["warnings"] = {{{"code", "uv-bleeding"}, {"message", "m"}, {"count", 2}, {"examples", {"mesh 0"}}}};
     return lumel::fuzz::bytes_of(manifest.dump());
@@ -74,6 +79,19 @@ void keep_layout(const lumel::AtlasRecord& record) {
         LUMEL_CHECK(place.page < atlas->pages.size(), place.page);
         LUMEL_CHECK(place.box.x + place.box.width <= atlas->pages[place.page].width, place.box.x);
         LUMEL_CHECK(place.box.y + place.box.height <= atlas->pages[place.page].height, place.box.y);
+    }
+}
+
+// Charts that are where a manifest says have texels there, wherever that is.
+void rasterize(const lumel::Atlas& layout) {
+    constexpr std::uint64_t kFewPixels = 1u << 20;  // a page of more is only slow
+    lumel::Context context(1);
+    const auto by_page = lumel::triangles_by_page(level().scene, level().geometry, level().charts, layout);
+    for (std::uint32_t p = 0; p < by_page.size(); ++p) {
+        if (std::uint64_t{layout.pages[p].width} * layout.pages[p].height > kFewPixels) continue;
+        const auto texels =
+            lumel::rasterize_page(level().scene, level().geometry, level().charts, layout, p, by_page[p], context);
+        LUMEL_CHECK(texels.ok());
     }
 }
 
@@ -106,6 +124,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (remarks.ok())
         for (const lumel::Diagnostic& warning : remarks->warnings)
             LUMEL_CHECK(warning.examples.size() <= lumel::Diagnostics::kMaxExamples, warning.examples.size());
+    const auto bake = lumel::parse_bake_record({reinterpret_cast<const char*>(data), size}, "out", "fuzz.json");
+    if (bake.ok() && lumel::check_charts(*bake, level().scene, level().charts).ok()) rasterize(bake->layout);
     if (!record.ok()) return 0;
     lumel::BakeOptions options;
     options.sky = record->sky;
