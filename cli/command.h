@@ -28,6 +28,7 @@ Run add_compare(CLI::App& app);
 Run add_pack(CLI::App& app);
 Run add_encode(CLI::App& app);
 Run add_check(CLI::App& app);
+Run add_inspect(CLI::App& app);
 
 // Values that several commands parse -------------------------------------------------------------------------------
 

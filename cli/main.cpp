@@ -80,6 +80,7 @@ int main(int argc, char** argv) {
     add("pack", "Pack raw chart masks into an atlas", add_pack);
     add("encode", "A bake's light in another encoding, or the error of all of them", add_encode);
     add("check", "Is a bake fit to ship: seams, bad texels, layout; exit code 1 above thresholds", add_check);
+    add("inspect", "Pictures of what a bake knows of each texel, on its pages and through cameras", add_inspect);
 
     try {
         app.parse(argc, argv);

@@ -29,6 +29,8 @@ says bake "=the sidecar's, or none Sky"
 says bake '=no sun X,Y,Z'
 says atlas '=a new layout'
 says render "default: view 0, the scene's first camera where it has one"
-for command in bake atlas render pack encode check; do says $command 'auto: a bar on a terminal, else plain'; done
+says inspect '=the views that the bake drew'
+says inspect '{point,bilinear,bicubic}=bilinear'
+for command in bake atlas render pack encode check inspect; do says $command 'auto: a bar on a terminal, else plain'; done
 
 finish
