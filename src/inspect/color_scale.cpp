@@ -12,7 +12,7 @@ namespace {
 
 constexpr float kOctaves = 4.0f;          // of ColorRule::log_heat
 constexpr double kUsual = 0.99;           // share of the numbers that a scale holds: a few outliers would flatten it
-constexpr float kNearlyWhite = 4.0f;      // exposed, of which the tone curve leaves little
+constexpr float kNearlyWhite = 1.5f;      // exposed: the tone curve is at 0.95 there
 constexpr float kSmallestScale = 1e-30f;  // of scales of zeros
 
 template <class Visit>

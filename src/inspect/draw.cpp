@@ -17,6 +17,8 @@ constexpr float kMargin = 12, kRowHeight = 26;  // pixels
 constexpr float kBarHeight = 18, kSwatch = 16;
 constexpr Vec3 kPaper{0.97f, 0.97f, 0.97f}, kInk{0.12f, 0.12f, 0.14f};
 constexpr int kTicks = 5;
+// Of colours that are seen at a grazing angle: kinds of texels alone do not show where one surface ends.
+constexpr float kGrazing = 0.55f;
 
 std::string number_text(double value) {
     char text[32];
@@ -172,10 +174,12 @@ Image draw_page(const TexelLayer& layer, const LayerPage& page, const ColorScale
 Image draw_view(const TexelLayer& layer, const LayerView& view, const ColorScale& scale, const std::string& about) {
     Image picture(view.values.width, view.values.height, 3);
     Painter painter{scale};
+    const bool is_shaded = !layer.blends();
     for (std::size_t i = 0; i < view.shown.size(); ++i) {
+        const float shade = is_shaded ? kGrazing + (1.0f - kGrazing) * view.facing[i] : 1.0f;
         const Vec3 color = [&] {
             switch (view.shown[i]) {
-                case Shown::texel: return painter.color(view.values, i);
+                case Shown::texel: return painter.color(view.values, i) * shade;
                 case Shown::empty: return kEmptyColor;
                 case Shown::no_lightmap: return kNoLightmapColor;
                 case Shown::back: return kBackColor;
@@ -191,7 +195,7 @@ Image draw_view(const TexelLayer& layer, const LayerView& view, const ColorScale
                                      {"no lightmap", kNoLightmapColor},
                                      {"no surface", kNothingColor}});
     painter.add_swatch(swatches);
-    return with_legend(picture, layer, scale, about, swatches);
+    return with_legend(picture, layer, scale, about + (is_shaded ? "; darker at an angle" : ""), swatches);
 }
 
 }  // namespace lumel

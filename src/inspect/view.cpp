@@ -48,7 +48,8 @@ LayerView look_up(const TexelLayer& layer, std::span<const LayerPage> pages, con
                   const WorldGeometry& geometry, const ChartSet& charts, const Atlas& atlas, const SeenSurfaces& seen,
                   ViewFilter filter) {
     const auto channels = static_cast<std::uint32_t>(layer.channels.size());
-    LayerView out{Image(seen.width, seen.height, channels), std::vector<Shown>(seen.hits.size(), Shown::nothing)};
+    LayerView out{Image(seen.width, seen.height, channels), std::vector<Shown>(seen.hits.size(), Shown::nothing),
+                  seen.facing};
     if (!layer.blends()) filter = ViewFilter::point;
     for (std::size_t i = 0; i < seen.hits.size(); ++i) {
         const Hit& hit = seen.hits[i];

@@ -23,8 +23,9 @@ enum class Shown : std::uint8_t {
 };
 
 struct LayerView {
-    Image values;              // a channel for each of the layer; zero where no texel is shown
-    std::vector<Shown> shown;  // per pixel
+    Image values;               // a channel for each of the layer; zero where no texel is shown
+    std::vector<Shown> shown;   // per pixel
+    std::vector<float> facing;  // SeenSurfaces::facing
 };
 
 // Layers whose numbers do not blend are looked up at a point, whatever the filter. TexelLayer::is_looked_up: texels

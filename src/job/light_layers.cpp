@@ -108,7 +108,7 @@ std::span<const LightLayer> light_layers() {
         of_file(PageFile::sky_visibility, "sky-visibility", "share of directions that reach the sky", "1",
                 ColorRule::share, kNumber, {"Y"}),
         of_file(PageFile::bent_normal, "bent-normal", "mean free direction", "1", ColorRule::direction, kVector,
-                kVector)};
+                kColor)};
     return kLayers;
 }
 

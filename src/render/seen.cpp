@@ -1,5 +1,7 @@
 #include "render/seen.h"
 
+#include <algorithm>
+#include <cmath>
 #include <span>
 
 #include "base/cancelled.h"
@@ -11,7 +13,8 @@ namespace lumel {
 
 Result<SeenSurfaces> see_surfaces(const Tracer& tracer, const WorldGeometry& geometry, const Camera& camera,
                                   std::uint32_t width, std::uint32_t height, bool through_backs, Context& context) {
-    SeenSurfaces out{width, height, std::vector<Hit>(std::size_t{width} * height)};
+    const std::size_t pixels = std::size_t{width} * height;
+    SeenSurfaces out{width, height, std::vector<Hit>(pixels), std::vector<float>(pixels)};
     const Lens lens(camera, width, height);
     const bool done = parallel_for(context, height, 1, [&](const ChunkRange& range) {
         const auto y = static_cast<std::uint32_t>(range.begin);
@@ -22,8 +25,12 @@ Result<SeenSurfaces> see_surfaces(const Tracer& tracer, const WorldGeometry& geo
         }
         const auto hits = std::span(out.hits).subspan(std::size_t{y} * width, width);
         tracer.closest(rays, hits);
-        if (!through_backs) return;
-        for (std::uint32_t x = 0; x < width; ++x) pass_culled(tracer, geometry, rays[x], hits[x]);
+        for (std::uint32_t x = 0; x < width; ++x) {
+            if (through_backs) pass_culled(tracer, geometry, rays[x], hits[x]);
+            if (hits[x].missed()) continue;
+            const float cosine = dot(geometry.geometric_normal(hits[x].triangle), rays[x].direction);
+            out.facing[std::size_t{y} * width + x] = std::min(std::fabs(cosine), 1.0f);
+        }
     });
     if (!done) return cancelled_error();
     return out;

@@ -14,7 +14,8 @@ namespace lumel {
 
 struct SeenSurfaces {
     std::uint32_t width = 0, height = 0;
-    std::vector<Hit> hits;  // row by row, through the centres of the pixels
+    std::vector<Hit> hits;      // row by row, through the centres of the pixels
+    std::vector<float> facing;  // cosine of the angle between ray and face, 0..1; 0 where there is no surface
 };
 
 // `through_backs`: single-sided surfaces are not seen from behind, as in a viewer; else their backs are what is seen.

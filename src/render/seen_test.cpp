@@ -41,6 +41,8 @@ TEST(SeenSurfaces, BacksAreSeenOrLookedThrough) {
     EXPECT_GE(pixels_of_the_small_wall(shown), 1u);
     EXPECT_LE(pixels_of_the_small_wall(shown), 9u);
     EXPECT_TRUE(shown.hits[shown.hits.size() / 2].back_face);
+    EXPECT_NEAR(shown.facing[shown.hits.size() / 2], 1.0f, 1e-6f);  // the middle of the picture, seen head on
+    EXPECT_LT(shown.facing[0], 0.95f);
     EXPECT_EQ(pixels_of_the_small_wall(through), 0u);
     for (const Hit& hit : through.hits) EXPECT_FALSE(hit.missed());
     EXPECT_EQ(pixels_of_the_small_wall(see(walls(true), true)), pixels_of_the_small_wall(shown));
