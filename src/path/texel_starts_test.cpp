@@ -11,7 +11,7 @@ namespace lumel {
 namespace {
 
 // A floor of 4 x 4 m with a thin double-sided wall on it, which stands in the middle of a row of texels: 8 texels a
-// metre, and the wall 0.05 m, less than half a texel, beside the floor's middle.
+// metre with centres at multiples of 0.125 m, which gather from 0.03 m around these; the wall is 0.01 m beside one row.
 Scene floor_with_wall() {
     test::SceneBuilder b;
     const auto grey = b.material({0.5f, 0.5f, 0.5f}), sheet = b.material({0.5f, 0.5f, 0.5f}, {}, true);
@@ -19,7 +19,7 @@ Scene floor_with_wall() {
     b.object(
         "wall", sheet,
         [](Mesh& m) {
-            test::add_quad(m, {0.05f, -1, 3}, {0, 0, -6}, {0, 3, 0});
+            test::add_quad(m, {0.01f, -1, 3}, {0, 0, -6}, {0, 3, 0});
         },
         {}, NodeClass::volume);
     b.scene().sky.color = {1, 1, 1};
@@ -38,7 +38,7 @@ TEST(TexelStarts, AWallParsTheTexelsThatItStandsOn) {
     const TexelStarts starts = starts_of(charted, {});
     std::size_t parted = 0;
     for (std::size_t i = 0; i < charted.texels.size(); ++i) {
-        const float beside = std::abs(charted.texels.position[i].x - 0.05f);
+        const float beside = std::abs(charted.texels.position[i].x - 0.01f);
         const bool moved = starts.place[i] != StartsPlace::usual;
         parted += moved ? 1 : 0;
         // A texel is 0.125 m wide: from half of that on nothing of it is beyond the wall.
@@ -59,7 +59,7 @@ TEST(TexelStarts, TexelsOfBothSidesKeepTheirPoints) {
     b.object(
         "wall", sheet,
         [](Mesh& m) {
-            test::add_quad(m, {0.05f, -1, 3}, {0, 0, -6}, {0, 3, 0});
+            test::add_quad(m, {0.01f, -1, 3}, {0, 0, -6}, {0, 3, 0});
         },
         {}, NodeClass::volume);
     b.scene().sky.color = {1, 1, 1};
