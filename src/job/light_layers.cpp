@@ -19,6 +19,7 @@ constexpr const char* kNoiseLayer = "noise";
 
 std::vector<std::string> with_suffixes(const std::string& prefix, const std::vector<std::string>& suffixes) {
     std::vector<std::string> out;
+    out.reserve(suffixes.size());
     for (const std::string& suffix : suffixes) out.push_back(prefix + suffix);
     return out;
 }

@@ -15,7 +15,7 @@
 namespace lumel {
 
 // A layer of the files: named ones, and FILE:CHANNELS for any channels of the EXR files of the pages, such as
-// "master:sky.L4", "l1:L1n.R" or "encoded_h4:H.0".
+// "master:sky.L4", "l1:L1n.R" or "encoded_h4:H1".
 struct LightLayer {
     TexelLayer layer;
     std::string stem;                   // of the file of each page
