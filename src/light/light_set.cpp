@@ -137,11 +137,8 @@ void LightSet::build_trees() {
         std::vector<LightBounds> scaled_bounds = bounds;
         for (std::size_t i = 0; i < shapes_.size(); ++i)
             scaled_bounds[i].intensity *= double{strength(artist_scale(shapes_[i].light, bounced))};
-        trees_.emplace_back(scaled_bounds);
+        trees_.emplace_back(scaled_bounds, kMostGroups);
     }
-    groups_ = trees_[0].groups(kMostGroups);
-    if (groups_.size() < 2) groups_.clear();
-    group_of_local_ = trees_[0].group_of_lights(groups_);
 }
 
 LightSet::Chosen LightSet::choose_local(const Receiver& receiver, float u, bool bounced) const {
@@ -153,7 +150,7 @@ LightSet::Chosen LightSet::choose_local(const Receiver& receiver, float u, bool 
     if (receiver.table && !bounced) {
         const lumel::Choice group = choose(receiver.table->ends, u);
         const std::uint32_t unit = unit_of(u) - receiver.table->begin(group.index);
-        const LightTree::Chosen chosen = trees_[0].choose_in(groups_[group.index], unit, group.units, receiver);
+        const LightTree::Chosen chosen = trees_[0].choose_in(groups()[group.index], unit, group.units, receiver);
         return {chosen.light, probability(chosen.units), static_cast<std::uint32_t>(group.index)};
     }
     const LightTree::Chosen chosen = tree(bounced).choose(receiver, u);
@@ -163,9 +160,14 @@ LightSet::Chosen LightSet::choose_local(const Receiver& receiver, float u, bool 
 float LightSet::probability_of(const Receiver& receiver, std::uint32_t local, bool bounced) const {
     if (choice_ == Choice::power) return probability(units_of(local_ends_, local));
     if (!receiver.table || bounced) return probability(tree(bounced).units_of(receiver, local));
-    const std::uint32_t group = group_of_local_[local];
+    const std::uint32_t group = trees_[0].group_of_lights()[local];
     if (group == kNone) return 0.0f;
-    return probability(trees_[0].units_in(groups_[group], receiver.table->units(group), receiver, local));
+    return probability(trees_[0].units_in(groups()[group], receiver.table->units(group), receiver, local));
+}
+
+std::span<const LightTree::Subtree> LightSet::groups() const {
+    const bool any = !trees_.empty() && trees_[0].groups().size() > 1;
+    return any ? trees_[0].groups() : std::span<const LightTree::Subtree>();
 }
 
 bool LightSet::empty() const { return suns_.empty() && !has_sky_ && !has_local(); }

@@ -55,9 +55,9 @@ public:
     [[nodiscard]] LightSample sample_sky(Vec2 u) const;
     // Parts of the local lights that a LightTable says how often to choose, of light that has not bounced; none where
     // there is nothing to choose, or no tree.
-    [[nodiscard]] std::span<const LightTree::Subtree> groups() const { return groups_; }
+    [[nodiscard]] std::span<const LightTree::Subtree> groups() const;
     [[nodiscard]] double importance_of(std::size_t group, const ReceiverRegion& region) const {
-        return trees_[0].importance_of(groups_[group], region);
+        return trees_[0].importance_of(group, region);
     }
     // u_select picks the light, u the point on it.
     [[nodiscard]] LightSample sample_local(const Receiver& receiver, float u_select, Vec2 u, bool bounced) const;
@@ -123,9 +123,7 @@ private:
     std::vector<Local> shapes_;
     std::vector<EmissiveTriangle> triangles_;
     Choice choice_;
-    std::vector<LightTree> trees_;            // for Choice::tree; one more where bounced light is another
-    std::vector<LightTree::Subtree> groups_;  // of trees_[0]
-    std::vector<std::uint32_t> group_of_local_;
+    std::vector<LightTree> trees_;                  // for Choice::tree; one more where bounced light is another
     std::vector<std::uint32_t> local_ends_;         // for Choice::power: math/discrete.h
     std::vector<std::uint32_t> local_of_triangle_;  // per world triangle the number, or kNone; empty: none emits
     std::vector<std::uint32_t> hittable_;           // into shapes_
