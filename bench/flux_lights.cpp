@@ -11,7 +11,7 @@
 namespace lumel::bench {
 
 FluxLights::FluxLights(const Scene& scene, const WorldGeometry& geometry, SurfaceReader surfaces)
-    : geometry_(&geometry), surfaces_(surfaces) {
+    : scene_(&scene), geometry_(&geometry), surfaces_(surfaces) {
     for (const Light& light : scene.lights) {
         if (light.bake == LightBake::none || max_component(light.intensity) <= 0.0f) continue;
         switch (light.shape) {
@@ -50,8 +50,8 @@ void FluxLights::add_emissive_objects() {
 
 LightSample FluxLights::sample_object(const EmissiveObject& object, Vec3 point, Vec2 u) const {
     const Choice choice = choose(object.ends, u.x);
-    LightSample sample =
-        EmissiveTriangle(*geometry_, surfaces_, object.triangles[choice.index]).sample(point, {choice.fraction, u.y});
+    LightSample sample = EmissiveTriangle(*scene_, *geometry_, surfaces_, object.triangles[choice.index])
+                             .sample(point, {choice.fraction, u.y});
     sample.weight = sample.weight / probability(choice.units);
     return sample;
 }

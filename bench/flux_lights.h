@@ -37,6 +37,7 @@ private:
     void add_emissive_objects();
     [[nodiscard]] LightSample sample_object(const EmissiveObject& object, Vec3 point, Vec2 u) const;
 
+    const Scene* scene_;
     const WorldGeometry* geometry_;
     SurfaceReader surfaces_;
     std::vector<Entry> lights_;

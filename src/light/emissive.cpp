@@ -25,11 +25,33 @@ int grid_size(const Scene& scene, const WorldGeometry& geometry, const WorldTria
 
 }  // namespace
 
-double EmissiveTriangle::power(const Scene& scene) const {
-    const WorldTriangle& t = geometry_->triangles[triangle_];
+EmissiveTriangle::EmissiveTriangle(const Scene& scene, const WorldGeometry& geometry, const SurfaceReader& surfaces,
+                                   std::uint32_t triangle)
+    : corners_(geometry.corners(triangle)),
+      normal_(geometry.geometric_normal(triangle)),
+      area_(geometry.area(triangle)),
+      triangle_(triangle),
+      scene_(&scene),
+      geometry_(&geometry),
+      surfaces_(surfaces) {
+    const WorldTriangle& t = geometry.triangles[triangle];
     const Material& material = scene.materials[t.material];
+    emission_ = material.emission;
+    is_even_ = material.emission_texture.texture == kNone && (t.flags & kNeedsAlpha) == 0;
+    double_sided_ = (t.flags & kDoubleSided) != 0;
+}
+
+// As rays see it: what they go through sends them no light.
+Vec3 EmissiveTriangle::radiance(float b1, float b2) const {
+    if (is_even_) return emission_;
+    return surfaces_.emission(triangle_, b1, b2) * surfaces_.opacity(triangle_, b1, b2);
+}
+
+double EmissiveTriangle::power() const {
+    const WorldTriangle& t = geometry_->triangles[triangle_];
+    const Material& material = scene_->materials[t.material];
     const int n =
-        material.emission_texture.texture == kNone ? 1 : grid_size(scene, *geometry_, t, material.emission_texture);
+        material.emission_texture.texture == kNone ? 1 : grid_size(*scene_, *geometry_, t, material.emission_texture);
     double sum = 0.0;
     for (int i = 0; i < n; ++i)
         for (int j = 0; j < n; ++j) {
@@ -41,42 +63,40 @@ double EmissiveTriangle::power(const Scene& scene) const {
     // Bright spots between the points keep a chance to be sampled.
     constexpr double kFloor = 1e-3;
     const double mean = std::max(sum / (n * n), kFloor * strength(material.emission));
-    return double{kPi} * area_ * mean * (double_sided() ? 2.0 : 1.0);
+    return double{kPi} * area_ * mean * (double_sided_ ? 2.0 : 1.0);
 }
 
-LightBounds EmissiveTriangle::bounds(const Scene& scene) const {
+LightBounds EmissiveTriangle::bounds() const {
     LightBounds b;
-    const auto corners = geometry_->corners(triangle_);
-    b.low = b.high = corners[0];
-    for (const Vec3 corner : corners)
+    b.low = b.high = corners_[0];
+    for (const Vec3 corner : corners_)
         for (std::size_t c = 0; c < 3; ++c) {
             b.low[c] = std::min(b.low[c], corner[c]);
             b.high[c] = std::max(b.high[c], corner[c]);
         }
-    b.axis = geometry_->geometric_normal(triangle_);
+    b.axis = normal_;
     b.cos_facing = 1.0f;
-    b.both_sides = double_sided();
-    b.intensity = power(scene) / (double{kPi} * (double_sided() ? 2.0 : 1.0));
+    b.both_sides = double_sided_;
+    b.intensity = power() / (double{kPi} * (double_sided_ ? 2.0 : 1.0));
     return b;
 }
 
 LightSample EmissiveTriangle::sample(Vec3 point, Vec2 u) const {
     const Vec2 b = UniformTriangle::sample(u);
-    const Vec3 to_light = geometry_->position(triangle_, b.x, b.y) - point;
+    const Vec3 to_light = corners_[0] * (1.0f - b.x - b.y) + corners_[1] * b.x + corners_[2] * b.y - point;
     const float distance = length(to_light);
     const Vec3 direction = normalize_or(to_light, {});
-    const float cosine = -dot(direction, geometry_->geometric_normal(triangle_));
-    const float emitting_cosine = double_sided() ? std::fabs(cosine) : cosine;
+    const float cosine = -dot(direction, normal_);
+    const float emitting_cosine = double_sided_ ? std::fabs(cosine) : cosine;
     if (!(emitting_cosine > 0.0f)) return {};
     const float pdf = area_to_solid_angle(distance, emitting_cosine, area_);
     if (!(pdf > 0.0f) || !std::isfinite(pdf)) return {};
-    const Vec3 radiance = surfaces_.emission(triangle_, b.x, b.y) * surfaces_.opacity(triangle_, b.x, b.y);
-    return {direction, distance, radiance / pdf, pdf, triangle_};
+    return {direction, distance, radiance(b.x, b.y) / pdf, pdf, triangle_};
 }
 
 LightHit EmissiveTriangle::hit(float b1, float b2, Vec3 direction, float distance, bool back_face) const {
-    if (back_face && !double_sided()) return {};
-    const float cosine = std::fabs(dot(direction, geometry_->geometric_normal(triangle_)));
+    if (back_face && !double_sided_) return {};
+    const float cosine = std::fabs(dot(direction, normal_));
     const bool can_be_sampled = cosine > 0.0f && area_ > 0.0f;
     const float pdf = can_be_sampled ? area_to_solid_angle(distance, cosine, area_) : 0.0f;
     return {surfaces_.emission(triangle_, b1, b2), pdf, distance};

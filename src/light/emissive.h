@@ -2,6 +2,9 @@
 // ones.
 #pragma once
 
+#include <array>
+#include <cstdint>
+
 #include "light/light_bounds.h"
 #include "light/light_sample.h"
 #include "scene/surface.h"
@@ -9,28 +12,35 @@
 
 namespace lumel {
 
-// A view of one triangle.
+// One triangle. What a sample reads of it lies together: of ten thousand, each sample takes another one, and what is
+// scattered over the scene's tables comes from far memory.
 class EmissiveTriangle {
 public:
-    EmissiveTriangle(const WorldGeometry& geometry, const SurfaceReader& surfaces, std::uint32_t triangle)
-        : geometry_(&geometry), surfaces_(surfaces), triangle_(triangle), area_(geometry.area(triangle)) {}
+    EmissiveTriangle(const Scene& scene, const WorldGeometry& geometry, const SurfaceReader& surfaces,
+                     std::uint32_t triangle);
 
     [[nodiscard]] std::uint32_t triangle() const { return triangle_; }
 
     // Estimated from the emission texture at fixed points; never zero for a triangle with an area whose material emits.
-    [[nodiscard]] double power(const Scene& scene) const;
-    [[nodiscard]] LightBounds bounds(const Scene& scene) const;
+    [[nodiscard]] double power() const;
+    [[nodiscard]] LightBounds bounds() const;
     [[nodiscard]] LightSample sample(Vec3 point, Vec2 u) const;
     // What a ray that hit the triangle meets there.
     [[nodiscard]] LightHit hit(float b1, float b2, Vec3 direction, float distance, bool back_face) const;
 
 private:
-    [[nodiscard]] bool double_sided() const { return (geometry_->triangles[triangle_].flags & kDoubleSided) != 0; }
+    [[nodiscard]] Vec3 radiance(float b1, float b2) const;
 
+    std::array<Vec3, 3> corners_;
+    Vec3 normal_;
+    float area_;  // square metres
+    std::uint32_t triangle_;
+    Vec3 emission_;  // of the material
+    bool is_even_;   // radiance is emission_ everywhere
+    bool double_sided_;
+    const Scene* scene_;
     const WorldGeometry* geometry_;
     SurfaceReader surfaces_;
-    std::uint32_t triangle_;
-    float area_;
 };
 
 // Emits and takes part in light transport.

@@ -43,7 +43,7 @@ LightHit meet(const test::World& world, const EmissiveTriangle& triangle, Vec3 o
 
 void expect_lambert(const test::World& world, Vec3 point, Vec3 normal, bool reversed) {
     const SurfaceReader surfaces = world.surfaces();
-    const EmissiveTriangle triangle(world.geometry, surfaces, 0);
+    const EmissiveTriangle triangle(world.scene, world.geometry, surfaces, 0);
     const auto [a, b, c] = world.geometry.corners(0);
     const double expected = reversed ? closed_form::polygon_light(point, normal, {c, b, a}, 6.0)
                                      : closed_form::polygon_light(point, normal, {a, b, c}, 6.0);
@@ -63,7 +63,7 @@ TEST(EmissiveTriangle, FrontGivesLambertsPolygon) {
 TEST(EmissiveTriangle, BackOfASingleSidedOneIsDark) {
     const test::World world = make_world(emitter(false));
     const SurfaceReader surfaces = world.surfaces();
-    const EmissiveTriangle triangle(world.geometry, surfaces, 0);
+    const EmissiveTriangle triangle(world.scene, world.geometry, surfaces, 0);
     const Vec3 above{0.5f, 3, 0.3f};
     EXPECT_EQ(triangle.sample(above, {0.3f, 0.3f}).distance, 0.0f);
     EXPECT_EQ(triangle.hit(0.3f, 0.3f, {0, -1, 0}, 1.0f, true).radiance, Vec3{});
@@ -84,8 +84,8 @@ TEST(EmissiveTriangle, PowerCountsAreaSidesAndTexture) {
     const test::World one = make_world(emitter(false)), two = make_world(emitter(true));
     const SurfaceReader s1 = one.surfaces(), s2 = two.surfaces();
     const double expected = closed_form::kPi * 4.0 * one.geometry.area(0);  // mean of the channels is 4
-    EXPECT_NEAR(EmissiveTriangle(one.geometry, s1, 0).power(one.scene) / expected, 1.0, 1e-6);
-    EXPECT_NEAR(EmissiveTriangle(two.geometry, s2, 0).power(two.scene) / (2 * expected), 1.0, 1e-6);
+    EXPECT_NEAR(EmissiveTriangle(one.scene, one.geometry, s1, 0).power() / expected, 1.0, 1e-6);
+    EXPECT_NEAR(EmissiveTriangle(two.scene, two.geometry, s2, 0).power() / (2 * expected), 1.0, 1e-6);
 }
 
 // A lamp of 4 x 4 texels in a map of 64 x 64.
@@ -114,7 +114,7 @@ TEST(EmissiveTriangle, PowerFindsASmallLampInItsTexture) {
         const SurfaceReader surfaces = world.surfaces();
         const double full = closed_form::kPi * 4.0 * world.geometry.area(0);
         const double share = 16.0 / (64 * 32);  // of the triangle's half of the texture
-        const double power = EmissiveTriangle(world.geometry, surfaces, 0).power(world.scene);
+        const double power = EmissiveTriangle(world.scene, world.geometry, surfaces, 0).power();
         // Points are 1.4 to 2 texels apart: good to a factor, which is all that a probability needs.
         EXPECT_GT(power, 0.3 * share * full) << x;
         EXPECT_LT(power, 3.0 * share * full) << x;
@@ -124,13 +124,13 @@ TEST(EmissiveTriangle, PowerFindsASmallLampInItsTexture) {
 TEST(EmissiveTriangle, PowerIsNeverZeroWhereTheMaterialEmits) {
     const test::World world = textured_world(50, 50);  // outside the triangle's half of the texture
     const SurfaceReader surfaces = world.surfaces();
-    EXPECT_GT(EmissiveTriangle(world.geometry, surfaces, 0).power(world.scene), 0.0);
+    EXPECT_GT(EmissiveTriangle(world.scene, world.geometry, surfaces, 0).power(), 0.0);
 }
 
 TEST(EmissiveTriangle, ATexturedOneIsSampledAsItIsMet) {
     const test::World world = textured_world(20, 20);
     const SurfaceReader surfaces = world.surfaces();
-    const EmissiveTriangle triangle(world.geometry, surfaces, 0);
+    const EmissiveTriangle triangle(world.scene, world.geometry, surfaces, 0);
     const Vec3 point{0.5f, 0.5f, 0.3f}, normal{0, 1, 0};
     const test::Moments light = test::irradiance_by_light([&](Vec2 u) { return triangle.sample(point, u); }, normal);
     const test::Moments rays =
@@ -157,7 +157,7 @@ TEST(EmissiveTriangle, HolesOfAnAlphaMaskEmitNothing) {
     builder.add_mesh(std::move(mesh), index);
     const test::World world = builder.build();
     const SurfaceReader surfaces = world.surfaces();
-    const EmissiveTriangle triangle(world.geometry, surfaces, 0);
+    const EmissiveTriangle triangle(world.scene, world.geometry, surfaces, 0);
     // The opaque part is where the first barycentric, u, exceeds a half.
     const Vec3 middle = (kA + kB) * 0.5f, edge = kA + (kB - kA) * 0.5f + (kC - kA) * 0.5f;
     const Vec3 point{0.5f, 0.5f, 0.3f}, normal{0, 1, 0};

@@ -102,7 +102,7 @@ void LightSet::add_emissive_triangles() {
         if (!is_emitter(geometry_->triangles[triangle])) continue;
         // Areas that single precision cannot hold are left to the rays that hit them.
         const float area = geometry_->area(triangle);
-        if (area > 0.0f && std::isfinite(area)) triangles_.emplace_back(*geometry_, surfaces_, triangle);
+        if (area > 0.0f && std::isfinite(area)) triangles_.emplace_back(*scene_, *geometry_, surfaces_, triangle);
     }
     if (triangles_.empty()) return;
     local_of_triangle_.assign(geometry_->triangle_count(), kNone);
@@ -115,7 +115,7 @@ void LightSet::share_by_power() {
     powers.reserve(shapes_.size() + triangles_.size());
     for (const Local& local : shapes_)
         powers.push_back(std::visit([](const auto& shape) { return shape.power(); }, local.shape));
-    for (const EmissiveTriangle& triangle : triangles_) powers.push_back(triangle.power(*scene_));
+    for (const EmissiveTriangle& triangle : triangles_) powers.push_back(triangle.power());
     LUMEL_CHECK(shapes_.size() < kUnits / 2, shapes_.size());
     local_ends_.resize(powers.size());
     // Lights that no ray can hit must be sampled. A triangle too dim for a share is found by the rays that hit it.
@@ -127,7 +127,7 @@ void LightSet::build_trees() {
     bounds.reserve(shapes_.size() + triangles_.size());
     for (const Local& local : shapes_)
         bounds.push_back(std::visit([](const auto& shape) { return shape.bounds(); }, local.shape));
-    for (const EmissiveTriangle& triangle : triangles_) bounds.push_back(triangle.bounds(*scene_));
+    for (const EmissiveTriangle& triangle : triangles_) bounds.push_back(triangle.bounds());
     // What the artist's controls switch off or dim is not worth its full share of samples.
     const bool one = std::ranges::all_of(shapes_, [&](const Local& local) {
         return artist_scale(local.light, false) == artist_scale(local.light, true);
@@ -238,7 +238,8 @@ LightHit LightSet::emissive(const Receiver& receiver, std::uint32_t triangle, fl
     if (!is_emitter(geometry_->triangles[triangle])) return {};
     const std::uint32_t local = local_of_triangle_.empty() ? kNone : local_of_triangle_[triangle];
     if (local == kNone) {  // left to the rays that hit it
-        LightHit hit = EmissiveTriangle(*geometry_, surfaces_, triangle).hit(b1, b2, direction, distance, back_face);
+        LightHit hit =
+            EmissiveTriangle(*scene_, *geometry_, surfaces_, triangle).hit(b1, b2, direction, distance, back_face);
         hit.pdf = 0.0f;
         return hit;
     }
