@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <span>
 #include <vector>
@@ -178,6 +179,24 @@ TEST(LightTree, ALightLosesNothingInCompany) {
                 }
             }
     }
+}
+
+// A light's importance is the same bits in any company: the chance of a light must not depend on who asks.
+TEST(Importance, IsTheSameBitsAloneAndAmongEight) {
+    const std::vector<LightBounds> lights = crowd(400, 7);
+    std::size_t lit = 0;
+    for (std::size_t first = 0; first < lights.size(); first += 8) {
+        PreparedBounds<8> eight;
+        for (std::size_t i = 0; i < 8; ++i) eight.set(i, lights[first + i]);
+        for (const Receiver& receiver : receivers(50)) {
+            const std::array<double, 8> together = eight.importance(receiver);
+            for (std::size_t i = 0; i < 8; ++i) {
+                ASSERT_EQ(together[i], importance(lights[first + i], receiver)) << first + i;
+                lit += together[i] > 0.0 ? 1 : 0;
+            }
+        }
+    }
+    EXPECT_GT(lit, 1000u);
 }
 
 // Zero importance promises darkness: no point of a patch sees the receiver from its lit side, above its horizon.
