@@ -10,8 +10,8 @@
 
 namespace lumel::cli {
 
-// A camera of the scene by name, "view K" (found automatically), a point of view (eye;target;vfov_degrees), or, of an
-// empty text, the first there is. Errors: usage; cancelled.
+// A camera of the scene by name, "view K" (that of preview_view_K.png), a point of view (eye;target;vfov_degrees), or,
+// of an empty text, the first there is. Errors: usage; cancelled.
 Result<Camera> find_camera(const std::string& text, const Transport& transport, Context& context);
 
 }  // namespace lumel::cli

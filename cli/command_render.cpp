@@ -13,7 +13,6 @@
 #include "io/image_io.h"
 #include "io/light_record.h"
 #include "job/baked_light.h"
-#include "lumel/bake_folder.h"
 #include "lumel/load.h"
 #include "path/path_integrator.h"
 #include "render/picture.h"

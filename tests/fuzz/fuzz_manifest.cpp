@@ -1,5 +1,6 @@
 // Any text as the manifest of an output folder: the masters that it names, the light that it records, which lights a
-// scene, the layout that it records, which a level keeps, and whose texels are rasterised; and as its report: the warnings.
+// scene, the layout that it records, which a level keeps, and whose texels are rasterised; and as its report: the
+// warnings.
 #include <algorithm>
 #include <cstdio>
 
