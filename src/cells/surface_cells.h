@@ -36,10 +36,10 @@ inline std::size_t cell_group(std::size_t path, std::size_t paths) { return path
 
 // What a cell gathered by paths of its own, apart from its links: light that reached it without another cell.
 struct CellGather {
-    Vec3 direct{};                                    // mean over the paths traced
-    std::array<Vec3, kCellGroups> direct_of_group{};  // over those of each group
-    std::uint32_t open = 0;                           // paths that meet no back of a single-sided surface first
+    Vec3 direct{};           // mean over the paths traced
+    std::uint32_t open = 0;  // paths that meet no back of a single-sided surface first
     std::uint32_t traced = 0;
+    std::array<Vec3, kCellGroups> direct_of_group{};  // as `direct`, over the paths of each group
 };
 
 class SurfaceCells {
