@@ -47,9 +47,9 @@ int usage_error(const CLI::App& app, const CLI::ParseError& error, int argc, cha
     return fail({ErrorCode::usage, message, {}, "commands: " + commands + "; see lumel --help"}, {});
 }
 
-// What was printed is not all there: a full disk, or a reader that is gone.
+// What was printed is not all there.
 int lost_output() {
-    std::fprintf(stderr, "lumel: error: standard output: cannot be written (give it room, or a reader)\n");
+    std::fprintf(stderr, "lumel: error: standard output: cannot be written (is its disk full?)\n");
     return kFailed;
 }
 

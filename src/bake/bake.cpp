@@ -210,8 +210,8 @@ struct PageBaker {
             smoothing.included = path.included;
             LUMEL_TRY_STATUS(denoise(texels, smoothing, sums, context));
         }
-        if (transport.cells) LUMEL_TRY_STATUS(add_cell_noise(texels, charts, atlas, transport, path, sums, context));
         const StageTimer timer(report, "post");
+        if (transport.cells) LUMEL_TRY_STATUS(add_cell_noise(texels, charts, atlas, transport, path, sums, context));
         const std::vector<std::uint32_t> readers = chart_ids(scene, charts, atlas, page);
         LUMEL_TRY(Lightmap map,
                   finish_page(texels, std::move(sums), std::move(surface), readers, options.dilate, context));

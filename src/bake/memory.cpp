@@ -168,7 +168,7 @@ CellMemory cell_memory(const WorldGeometry& geometry, const Atlas& atlas, std::u
     if (both_sides) cells *= 2;
     return {fronts * kCellBytes + cells * 2 * sizeof(Vec3) + geometry.triangles.size() * kCellBytesPerTriangle,
             fronts * kTexelBufferBytes +
-                cells * (links_per_cell(cells, samples) * sizeof(CellLink) + sizeof(CellGather) + 5 * sizeof(Vec3))};
+                cells * (links_per_cell(cells, samples) * sizeof(CellLink) + sizeof(CellGather) + 6 * sizeof(Vec3))};
 }
 
 SeamMemory seam_memory(std::uint64_t border_edges, const Atlas& atlas) {

@@ -1,6 +1,8 @@
 // The same bits, whoever shares the work.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <span>
 #include <string>
 #include <utility>
 

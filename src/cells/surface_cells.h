@@ -77,7 +77,7 @@ public:
     // into all that gather around it. At least what it is on average, in proportion to the light. `place.home` is not
     // kNone.
     [[nodiscard]] Vec3 noise(const Place& place) const;
-    // That average: variance over the square of I.
+    // That average: variance over the square of what is gathered from cells.
     [[nodiscard]] Vec3 relative_noise() const { return relative_noise_; }
 
     // Where a cell gathers: its sample points; nothing of cells that are not usable. Returns how many.

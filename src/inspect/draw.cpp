@@ -11,7 +11,7 @@
 namespace lumel {
 namespace {
 
-constexpr std::uint32_t kSmallestWidth = 720;   // which the words of a legend need
+constexpr std::uint32_t kSmallestWidth = 1024;  // which the words of a legend need
 constexpr std::uint32_t kMagnifiedEdge = 512;   // of small pages, pixels
 constexpr float kMargin = 12, kRowHeight = 26;  // pixels
 constexpr float kBarHeight = 18, kSwatch = 16;

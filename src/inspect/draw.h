@@ -16,8 +16,8 @@ inline constexpr Vec3 kNoLightmapColor{0.36f, 0.36f, 0.40f};
 inline constexpr Vec3 kNothingColor{0.80f, 0.87f, 0.93f};
 inline constexpr Vec3 kNotFiniteColor{1, 0, 0};
 
-// RGB, sRGB-coded 0..1. `about`: how it was looked up, for the legend. Pages of fewer than 512 texels are magnified by
-// a whole number.
+// RGB, sRGB-coded 0..1. `about`: how it was looked up, for the legend. Pages of 256 texels or
+// less are magnified by a whole number.
 Image draw_page(const TexelLayer& layer, const LayerPage& page, const ColorScale& scale, const std::string& about);
 Image draw_view(const TexelLayer& layer, const LayerView& view, const ColorScale& scale, const std::string& about);
 

@@ -1,6 +1,8 @@
 #include "io/bake_record.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
 
 #include "base/try.h"
@@ -25,6 +27,10 @@ std::string_view text_of(std::span<const std::byte> bytes) {
 Result<Vec2> read_pair(const Json& json, const char* key, const std::string& where) {
     std::array<double, 2> numbers{};
     LUMEL_TRY_STATUS(read_numbers(json, key, numbers.data(), numbers.size(), where));
+    constexpr double kLargest = 1e9;  // texels per unit, or texels: no layout of ours has more
+    for (const double number : numbers)
+        if (!(std::abs(number) <= kLargest))
+            return invalid(where, std::string("'") + key + "' is beyond any layout", kBakeAgain);
     return Vec2{static_cast<float>(numbers[0]), static_cast<float>(numbers[1])};
 }
 
@@ -101,6 +107,8 @@ Result<BakeRecord> parse_bake_record(std::string_view text, const fs::path& fold
     LUMEL_TRY(const std::string source, string_or(manifest, "source_path", "", where));
     if (!source.empty()) out.source = found_from_here(folder, source);
     LUMEL_TRY(out.layout, read_layout(manifest, record, where));
+    for (const AtlasPage& page : record.pages)
+        out.options.max_page = std::max({out.options.max_page, page.width, page.height});
     out.options.atlas = std::make_shared<const AtlasRecord>(std::move(record));
     return out;
 }

@@ -18,7 +18,8 @@ struct BakeRecord {
     std::filesystem::path folder;
     std::filesystem::path source;  // as found from here; empty where an older bake did not say
     std::string geometry_hash, input_hash;
-    // Of all options those that decide where texels lie and where their paths start; `atlas` is the layout itself.
+    // Of all options those that charts and the starts of paths depend on, but for which nodes are of class volume by
+    // their charts (layout); `atlas` is the layout itself.
     BakeOptions options;
     Atlas layout;  // placements as the manifest has them, bit for bit
 };

@@ -159,9 +159,10 @@ struct BakeWriter::Impl {
     void warn_of_cut_light(const LitTexture& texture, std::uint32_t page) const {
         if (texture.cut_texels == 0) return;
         char where[80];
-        std::snprintf(where, sizeof where, "page %u, up to %.1f times", page, static_cast<double>(texture.cut_ratio));
+        std::snprintf(where, sizeof where, "page %u, the brightest %.1f times too dark", page,
+                      static_cast<double>(texture.cut_ratio));
         context.diagnostics.add("display-cut",
-                                "The 8-bit texture of scene.glb shows these texels darker than they are baked, so that "
+                                "The 8-bit texture of scene.glb shows these texels darker than they are, so that "
                                 "all others keep their codes; the .exr files have their light",
                                 where, texture.cut_texels);
     }

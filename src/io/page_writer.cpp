@@ -281,7 +281,7 @@ Result<ManifestPage> write_page_files(const std::filesystem::path& folder, const
 }
 
 LitTexture lit_texture(const Lightmap& map, const LayerWeights& weights) {
-    constexpr float kCutUnseen = 0.05f;
+    constexpr float kCutUnseen = 0.05f;  // nobody sees a cut of that share
     std::vector<Vec3> light(map.texels.size());
     for (std::size_t t = 0; t < light.size(); ++t) {
         const auto& layers = map.texels.layers[t];

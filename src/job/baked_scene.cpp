@@ -40,6 +40,32 @@ BakeOptions light_of(const LightRecord& light) {
     return out;
 }
 
+// Of the scene itself the bake has warned already.
+class Unwarned {
+public:
+    explicit Unwarned(Diagnostics& diagnostics) : diagnostics_(diagnostics), before_(diagnostics) {}
+    ~Unwarned() { diagnostics_ = before_; }
+    Unwarned(const Unwarned&) = delete;
+    Unwarned& operator=(const Unwarned&) = delete;
+
+private:
+    Diagnostics& diagnostics_;
+    Diagnostics before_;
+};
+
+// Which nodes are of class volume because their charts were bad depends on the density that was asked for: the layout
+// tells, for they have no place in it.
+std::vector<bool> demoted_in(const BakeRecord& record, const Scene& scene, const ChartSet& charts) {
+    const std::vector<std::uint32_t>& first = record.layout.first_placement;
+    std::vector<bool> out(scene.instances.size());
+    if (first.size() != scene.instances.size() + 1) return out;  // of another scene, as check_charts() will say
+    for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+        const bool has_charts = !charts.meshes[scene.instances[i].mesh].charts.empty();
+        out[i] = scene.instances[i].node_class == NodeClass::lightmap && has_charts && first[i] == first[i + 1];
+    }
+    return out;
+}
+
 }  // namespace
 
 BakedScene::BakedScene(BakeRecord record, LoadedScene loaded, WorldGeometry geometry)
@@ -53,7 +79,7 @@ PathOptions BakedScene::path_options() const {
 }
 
 Result<std::unique_ptr<BakedScene>> BakedScene::load(const fs::path& folder, const fs::path& source, Context& context) {
-    const Diagnostics before = context.diagnostics;
+    const Unwarned unwarned(context.diagnostics);
     LUMEL_TRY(BakeRecord record, read_bake_record(folder));
     LUMEL_TRY(const LightRecord light, read_light_record(folder));
     LUMEL_TRY(const fs::path file, find_source(record, source));
@@ -73,10 +99,10 @@ Result<std::unique_ptr<BakedScene>> BakedScene::load(const fs::path& folder, con
     std::unique_ptr<BakedScene> out(new BakedScene(std::move(record), std::move(loaded), std::move(geometry)));
     const Scene& scene = out->loaded_.scene;
     LUMEL_TRY(out->charts_, make_charts(scene, out->geometry_, chart_options(out->record_.options), context));
+    out->charts_.demoted = demoted_in(out->record_, scene, out->charts_);
     LUMEL_TRY_STATUS(check_charts(out->record_, scene, out->charts_));
     LUMEL_TRY(out->tracer_, make_embree_tracer(out->geometry_, out->surfaces_, context));
     out->transport_.emplace(Transport{scene, out->geometry_, out->surfaces_, out->lights_, *out->tracer_});
-    context.diagnostics = before;
     return out;
 }
 

@@ -43,7 +43,8 @@ LightLayer of_master(const char* layer, const std::string& what) {
 float relative_error(Vec3 variance, Vec3 light) {
     const Vec3 error{std::sqrt(variance.x), std::sqrt(variance.y), std::sqrt(variance.z)};
     const float mean = luminance(light);
-    return mean > 0.0f ? luminance(error) / mean : 0.0f;
+    const float absolute = luminance(error);
+    return absolute == 0.0f ? 0.0f : absolute / mean;  // of no light, or of what is no number: painted red
 }
 
 // Channel groups of a file: "L1n.R" for L1n.R.X, L1n.R.Y, L1n.R.Z.
@@ -206,7 +207,9 @@ Result<LayerPage> read_light_layer(const LightLayer& light, const MasterFile& ma
 void choose_rule(std::span<const LayerPage> pages, TexelLayer& layer) {
     if (layer.rule != ColorRule::light && layer.rule != ColorRule::heat) return;
     for (const LayerPage& page : pages)
-        if (std::ranges::any_of(page.values.data, [](float v) { return v < 0.0f; })) {
+        // A few may be what rounding left.
+        if (20 * std::ranges::count_if(page.values.data, [](float v) { return v < 0.0f; }) >
+            std::ssize(page.values.data)) {
             layer.rule = ColorRule::around_zero;
             return;
         }

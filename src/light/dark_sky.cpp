@@ -1,5 +1,6 @@
 #include "light/dark_sky.h"
 
+#include <array>
 #include <cstdio>
 
 #include "light/sky_map.h"

@@ -121,7 +121,7 @@ bool is_compact(const Pixels& pixels, const Region& region, Vec3 center) {
 }
 
 Error no_sun(const char* why) {
-    return {ErrorCode::unsupported, std::string("no sun found in the sky map: ") + why, {}, "leave the sun in the map"};
+    return {ErrorCode::unsupported, std::string("no sun found in the sky map: ") + why, {}, {}};
 }
 
 }  // namespace

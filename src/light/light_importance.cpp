@@ -25,6 +25,7 @@ Angle minus(Angle a, Angle b) {
 
 float outside(float low, float high, float x) { return std::max(std::max(low - x, x - high), 0.0f); }
 
+constexpr float kLeastEmission = 1e-6f;
 constexpr float kHuge = 1e18f;  // lengths whose squares single precision holds
 
 }  // namespace
@@ -84,7 +85,9 @@ std::array<double, n> PreparedBounds<n>::importance_in(const ReceiverRegion& reg
         const Angle from_cone = minus({from_front, sine_of(from_front)}, {cos_facing_[i], sin_facing_[i]});
         const float emission = minus(from_cone, box).cosine;
         const float cosine = from_normal.cosine;
-        float seen = (kGrazing + (1.0f - kGrazing) * cosine) * emission;
+        // Bounds of several lights are a rounding wider than what they hold: on their rim the cosine is below zero, and
+        // a light there might shine all the same.
+        float seen = (kGrazing + (1.0f - kGrazing) * cosine) * std::max(emission, kLeastEmission);
         seen = cosine > 0.0f ? seen : 0.0f;
         seen = emission > cos_emission_[i] ? seen : 0.0f;
         // Within the box, or nearly, light comes from everywhere; and it is not nearer than the box is large.

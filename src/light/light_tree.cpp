@@ -75,9 +75,10 @@ LightTree::PerChild LightTree::share(const Node& node, std::uint32_t units, cons
     std::uint32_t guaranteed = 0;
     double total = 0.0;
     for (std::size_t i = 0; i < kChildren; ++i) {
-        guaranteed += sums[i] > 0.0 ? node.guaranteed[i] : 0;
+        const bool shines = sums[i] > 0.0;
+        guaranteed += shines ? node.guaranteed[i] : 0;
         ends[i] = guaranteed;
-        total += sums[i];
+        total += shines ? sums[i] : 0.0;
         sums[i] = total;
     }
     if (!(total > 0.0)) return {};

@@ -200,6 +200,31 @@ TEST(Importance, IsTheSameBitsAloneAndAmongEight) {
 }
 
 // Zero importance promises darkness: no point of a patch sees the receiver from its lit side, above its horizon.
+// Bounds of groups are wider by a rounding, whose rim is where a cosine changes its sign: what is looked at from there
+// is found by bisection, then step by step around it.
+TEST(Importance, IsNeverNegative) {
+    LightBounds b;
+    b.low = {-0.1f, -0.1f, -0.1f};
+    b.high = {0.1f, 0.1f, 0.1f};
+    b.cos_facing = 0.9f;
+    b.cos_emission = -1e-6f;
+    b.intensity = 1.0;
+    const auto seen_from = [&](float angle) {
+        const Vec3 at = Vec3{std::sin(angle), 0.0f, std::cos(angle)} * 3.0f;
+        return importance(b, Receiver{at, normalize(at * -1.0f)});
+    };
+    float lit = 1.5f, dark = 3.0f;
+    ASSERT_GT(seen_from(lit), 0.0);
+    ASSERT_EQ(seen_from(dark), 0.0);
+    for (int k = 0; k < 40; ++k) {
+        const float middle = 0.5f * (lit + dark);
+        (seen_from(middle) != 0.0 ? lit : dark) = middle;
+    }
+    float angle = lit;
+    for (int k = 0; k < 300; ++k) angle = std::nextafter(angle, 0.0f);
+    for (int k = 0; k < 600; ++k, angle = std::nextafter(angle, 4.0f)) ASSERT_GE(seen_from(angle), 0.0) << k;
+}
+
 TEST(Importance, OfZeroIsDarkness) {
     test::Random random(6);
     int zeros = 0;
