@@ -127,13 +127,18 @@ TEST(Check, FindsAnInvalidTexel) {
     EXPECT_EQ(failures(bake), Names{"invalid"});
 }
 
-TEST(Check, FindsAnUncoveredTriangle) {
+// What the texels within one triangle are.
+CheckedBake bake_with_hole(TexelState state) {
     CheckedBake bake = clean_bake();
     const auto middle = static_cast<std::uint32_t>(left_of(0)) + kTile / 3;  // of one triangle alone
     for (std::uint32_t y = 22; y < 27; ++y)
-        for (std::uint32_t x = middle - 2; x < middle + 3; ++x) bake.pages[0].state[texel(x, y)] = TexelState::empty;
-    EXPECT_EQ(failures(bake), Names{"uncovered"});
+        for (std::uint32_t x = middle - 2; x < middle + 3; ++x) bake.pages[0].state[texel(x, y)] = state;
+    return bake;
 }
+
+TEST(Check, FindsAnUncoveredTriangle) { EXPECT_EQ(failures(bake_with_hole(TexelState::empty)), Names{"uncovered"}); }
+
+TEST(Check, WhatNobodySeesIsNotUncovered) { EXPECT_EQ(failures(bake_with_hole(TexelState::hidden)), Names{}); }
 
 TEST(Check, FindsAnOverlap) {
     CheckedBake bake = clean_bake();

@@ -11,8 +11,9 @@
 
 namespace lumel {
 
-// What the master says of a texel, by number.
-enum class TexelState : std::uint8_t { empty = 0, dilated = 1, filled = 2, baked = 3 };
+// What the master says of a texel, by number. Hidden is told by its count: gathered, but nothing that anybody sees, as
+// inside a solid, nor has it a neighbour to be filled from.
+enum class TexelState : std::uint8_t { empty = 0, dilated = 1, filled = 2, baked = 3, hidden = 4 };
 
 struct CheckedPage {
     std::uint32_t width = 0, height = 0;

@@ -29,7 +29,7 @@ public:
 private:
     void texel(std::uint32_t x, std::uint32_t y) {
         const std::size_t i = std::size_t{y} * page_.width + x;
-        if (page_.state[i] == TexelState::empty) return;
+        if (page_.state[i] == TexelState::empty || page_.state[i] == TexelState::hidden) return;
         const TexelDefect here{index_, x, y};
         const float* rgb = &page_.light.data[i * page_.light.channels];
         if (!is_finite(Vec3{rgb[0], rgb[1], rgb[2]})) {

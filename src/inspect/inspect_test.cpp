@@ -32,7 +32,7 @@ struct Inspected {
         coverage.assign(pages[0].texels.texel_at.size(), Coverage::baked);
     }
     [[nodiscard]] BakedLayout layout() const { return {charted.charts, charted.atlas, charted.traced.transport}; }
-    [[nodiscard]] static const TexelLayer& layer(const std::string& name) {
+    [[nodiscard]] static TexelLayer layer(const std::string& name) {
         return *std::ranges::find(gbuffer_layers(), name, &TexelLayer::name);
     }
     [[nodiscard]] LayerPage page(const std::string& name) const {
@@ -165,7 +165,7 @@ TEST(GBuffer, SliversAreCovered) {
 
 TEST(LayerView, ShowsTexelsBacksAndWhatIsNoSurface) {
     Inspected inspected(square());
-    const TexelLayer& layer = Inspected::layer("albedo");
+    const TexelLayer layer = Inspected::layer("albedo");
     const LayerPage page = inspected.page("albedo");
     const LayerView above = inspected.view(layer, page, inspected.see(kAbove), ViewFilter::bilinear);
     EXPECT_EQ(above.shown[kMiddle], Shown::texel);
@@ -238,7 +238,7 @@ bool has_color(const Image& image, Vec3 color) {
 
 TEST(DrawLayer, EachPictureHasALegendOfItsColours) {
     Inspected inspected(square());
-    const TexelLayer& layer = Inspected::layer("state");
+    const TexelLayer layer = Inspected::layer("state");
     const std::vector<LayerPage> pages{inspected.page("state")};
     const ColorScale scale(layer, pages);
     const Image page = draw_page(layer, pages[0], scale, "page 0");
@@ -254,7 +254,7 @@ TEST(DrawLayer, EachPictureHasALegendOfItsColours) {
 
 TEST(DrawLayer, WhatIsNoNumberIsMarked) {
     Inspected inspected(square());
-    const TexelLayer& layer = Inspected::layer("texel-size");
+    const TexelLayer layer = Inspected::layer("texel-size");
     std::vector<LayerPage> pages{inspected.page("texel-size")};
     EXPECT_FALSE(has_color(draw_page(layer, pages[0], ColorScale(layer, pages), ""), kNotFiniteColor));
     const TexelBuffer& texels = inspected.pages[0].texels;

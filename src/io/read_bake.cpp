@@ -30,7 +30,7 @@ Result<CheckedPage> read_page(const MasterFile& master, std::uint32_t index) {
         return invalid(lightmap.string(), "is not the page that the manifest describes", kOneBake);
     for (float& v : page.light.data) v = from_file_unit(v, unit_of(PageFile::lightmap));
 
-    const std::array<std::string, 4> names{"coverage", "variance.R", "variance.G", "variance.B"};
+    const std::array<std::string, 5> names{"coverage", "variance.R", "variance.G", "variance.B", "count"};
     LUMEL_TRY(const NamedChannels channels, read_exr_channels(master.file, names));
     if (channels.width != page.width || channels.height != page.height)
         return invalid(master.file.string(), "is not the page that the manifest describes", kOneBake);
@@ -42,7 +42,8 @@ Result<CheckedPage> read_page(const MasterFile& master, std::uint32_t index) {
         const float coverage = channels.planes[0][i];
         if (!(coverage == 0.0f || coverage == 1.0f || coverage == 2.0f || coverage == 3.0f))
             return invalid(master.file.string(), "coverage is none of 0 to 3", "the file is damaged: bake again");
-        page.state[i] = static_cast<TexelState>(coverage);
+        const bool is_hidden = coverage == 0.0f && channels.planes[4][i] > 0.0f;
+        page.state[i] = is_hidden ? TexelState::hidden : static_cast<TexelState>(coverage);
         for (std::size_t c = 0; c < 3; ++c)
             page.variance.data[3 * i + c] = from_file_unit(from_file_unit(channels.planes[c + 1][i], unit), unit);
     }

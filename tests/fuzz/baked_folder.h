@@ -34,7 +34,8 @@ public:
             textures.push_back({encode_png(page.width, page.height, 3, pixels), 1.0f});
             const Image image(page.width, page.height, 3);
             (void)write_exr(folder / page_file(PageFile::lightmap, p), image, ExrType::half);
-            const std::vector<ExrChannelSource> channels{{"coverage"}, {"variance.R"}, {"variance.G"}, {"variance.B"}};
+            const std::vector<ExrChannelSource> channels{
+                {"coverage"}, {"variance.R"}, {"variance.G"}, {"variance.B"}, {"count"}};
             (void)write_exr(folder / page_file(PageFile::master, p), page.width, page.height, channels,
                             [](std::uint32_t, std::span<float>) { return false; });
             manifest["pages"].push_back({{"width", page.width},
