@@ -72,7 +72,7 @@ expect 0 '' inspect out --scene ok.gltf
 expect 0 '' bake ok.gltf -o kept "${quick[@]}" --sky 1,1,1
 expect 0 '' bake ok.gltf -o again_kept --preset preview --samples 1 --views 0 --sky 1,1,1 --atlas kept/manifest.json
 expect 0 '' inspect again_kept --camera none
-expect 0 '' bake ok.gltf -o collapsed --preset preview --samples 4 --views 0 --sky 1,1,1 --collapse 0.9
+expect 0 '' bake ok.gltf -o collapsed --preset preview --samples 4 --views 0 --sky 1,1,1 --collapse 0.9 --texels-per-metre 16
 expect 0 '' inspect collapsed --camera none
 
 # What there is not.
