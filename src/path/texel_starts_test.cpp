@@ -11,18 +11,22 @@
 namespace lumel {
 namespace {
 
+void add_wall(test::SceneBuilder& b, std::uint32_t material) {
+    b.object(
+        "wall", material,
+        [](Mesh& m) {
+            test::add_quad(m, {0.01f, -1, 3}, {0, 0, -6}, {0, 3, 0});
+        },
+        {}, NodeClass::volume);
+}
+
 // A floor of 4 x 4 m with a thin double-sided wall on it, which stands in the middle of a row of texels: 8 texels a
 // metre with centres at multiples of 0.125 m, which gather from 0.03 m around these; the wall is 0.01 m beside one row.
 Scene floor_with_wall() {
     test::SceneBuilder b;
     const auto grey = b.material({0.5f, 0.5f, 0.5f}), sheet = b.material({0.5f, 0.5f, 0.5f}, {}, true);
     b.object("floor", grey, [](Mesh& m) { test::add_quad(m, {-2, 0, 2}, {4, 0, 0}, {0, 0, -4}); });
-    b.object(
-        "wall", sheet,
-        [](Mesh& m) {
-            test::add_quad(m, {0.01f, -1, 3}, {0, 0, -6}, {0, 3, 0});
-        },
-        {}, NodeClass::volume);
+    add_wall(b, sheet);
     b.scene().sky.color = {1, 1, 1};
     return b.build();
 }
@@ -57,12 +61,7 @@ TEST(TexelStarts, TexelsOfBothSidesKeepTheirPoints) {
     test::SceneBuilder b;
     const auto sheet = b.material({0.5f, 0.5f, 0.5f}, {}, true);
     b.object("floor", sheet, [](Mesh& m) { test::add_quad(m, {-1, 0, 1}, {2, 0, 0}, {0, 0, -2}); });
-    b.object(
-        "wall", sheet,
-        [](Mesh& m) {
-            test::add_quad(m, {0.01f, -1, 3}, {0, 0, -6}, {0, 3, 0});
-        },
-        {}, NodeClass::volume);
+    add_wall(b, sheet);
     b.scene().sky.color = {1, 1, 1};
     const test::ChartedScene charted(b.build(), 8.0, context);
     PathOptions path;
