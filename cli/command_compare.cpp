@@ -80,6 +80,11 @@ Result<ImageMetrics> measure(const Options& options) {
     if (metrics.texels == 0)
         return Error{ErrorCode::invalid_input, "the mask leaves no texel to compare", options.mask,
                      "texels count where the mask is white"};
+    if (metrics.reference_mean == 0.0)
+        std::fprintf(stderr,
+                     "lumel: warning: %s has a mean of 0: nRMSE and bias are absolute, and relMSE says nothing "
+                     "[black-reference]\n",
+                     options.reference.c_str());
     return metrics;
 }
 

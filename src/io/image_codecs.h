@@ -21,8 +21,8 @@ inline constexpr std::uint32_t kMaxTextureEdge = 8192;
 enum class ImageFormat : std::uint8_t { unknown, png, jpeg, hdr, exr, pfm, pgm };
 ImageFormat image_format(std::span<const std::byte> bytes);
 
-// Width and height positive and at most max_edge; values (pixels times channels) not beyond 64 M plus 128 for each byte
-// of the file: the tightest codec here seldom does better, and a hostile header asks for far more.
+// Width and height positive and at most max_edge; values (pixels times channels) not beyond 64 M plus 1032 for each
+// byte of the file, which is what Deflate makes of a single colour: a hostile header asks for far more.
 Status check_image_size(std::uint64_t width, std::uint64_t height, std::uint64_t channels, std::uint32_t max_edge,
                         std::size_t file_bytes, const std::string& where);
 

@@ -56,7 +56,8 @@ Status check_image_size(std::uint64_t width, std::uint64_t height, std::uint64_t
             ErrorCode::unsupported,
             "has " + size + "; at most " + std::to_string(max_edge) + " x " + std::to_string(max_edge) + " are read",
             where, "make it smaller"};
-    if (width * height * channels > (std::uint64_t{64} << 20) + 128 * std::uint64_t{file_bytes})
+    // Deflate makes of a single colour at most 1032 times less.
+    if (width * height * channels > (std::uint64_t{64} << 20) + 1032 * std::uint64_t{file_bytes})
         return Error{
             ErrorCode::unsupported,
             "says it has " + size + ", more than are read from a file of " + std::to_string(file_bytes) + " bytes",
