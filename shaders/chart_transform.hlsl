@@ -1,10 +1,9 @@
+// Made by scripts/shaders from chart_transform.glsl: edit that.
 // Lightmap UVs of instances that share their vertices: each chart of each instance has a transform of its own in one
 // buffer (`transforms` of LUMEL_lightmap in scene.glb, `charts.transform` in manifest.json: docs/formats.md). A vertex
 // knows its chart and its place in it (`charts`, `chartUvs`), an instance where its charts begin (`firstChart`).
+// docs/stages/shaders.md shows how each language reads that buffer.
 // Based on: O'Donnell, "Precomputed Global Illumination in Frostbite" (2018), "Unpacking transforms in the shader".
-//
-//   StructuredBuffer<float4> lumel_charts;
-//   float2 uv = lumel_lightmap_uv(chart_uv, lumel_charts[lumel_chart_index(first_chart, chart)]);
 
 // Which entry of the buffer.
 uint lumel_chart_index(uint first_chart, uint chart) {
@@ -18,5 +17,5 @@ uint2 lumel_chart_texel(uint index, uint width) {
 
 // Lightmap UV, 0 to 1 over the page: what TEXCOORD_1 holds.
 float2 lumel_lightmap_uv(float2 chart_uv, float4 transform) {
-    return chart_uv * transform.xy + transform.zw;
+    return chart_uv * float2(transform.x, transform.y) + float2(transform.z, transform.w);
 }

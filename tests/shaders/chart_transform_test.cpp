@@ -3,11 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <regex>
-#include <sstream>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "io/gltf_accessor.h"
@@ -24,54 +20,14 @@ namespace lumel {
 namespace {
 
 namespace glsl {
-using vec2 = test::ShaderVec2;
-using vec4 = test::ShaderVec4;
-using uvec2 = test::ShaderUvec2;
-using uint = std::uint32_t;
+using namespace test::glsl;
 #include "chart_transform.glsl"
 }  // namespace glsl
-
-namespace hlsl {
-using float2 = test::ShaderVec2;
-using float4 = test::ShaderVec4;
-using uint2 = test::ShaderUvec2;
-using uint = std::uint32_t;
-#include "chart_transform.hlsl"
-}  // namespace hlsl
-
-// Without comments and with single spaces.
-std::string code_of(const std::string& file) {
-    std::ifstream stream(std::string(LUMEL_SOURCE_DIR) + "/shaders/" + file);
-    std::stringstream text;
-    text << stream.rdbuf();
-    const std::string bare = std::regex_replace(text.str(), std::regex("//[^\n]*"), "");
-    return std::regex_replace(bare, std::regex("\\s+"), " ");
-}
-
-std::string replaced(std::string text, std::initializer_list<std::pair<const char*, const char*>> rules) {
-    for (const auto& [from, to] : rules) text = std::regex_replace(text, std::regex(from), to);
-    return text;
-}
-
-TEST(ChartTransform, AllLanguagesSayTheSame) {
-    const std::string text = code_of("chart_transform.glsl");
-    EXPECT_NE(text.find("vec2 lumel_lightmap_uv(vec2 chart_uv, vec4 transform) {"), std::string::npos) << text;
-    EXPECT_EQ(text, replaced(code_of("chart_transform.hlsl"),
-                             {{"\\buint2\\b", "uvec2"}, {"\\bfloat2\\b", "vec2"}, {"\\bfloat4\\b", "vec4"}}));
-    EXPECT_EQ(text, replaced(code_of("chart_transform.wgsl"), {{"\\bvec2u\\b", "uvec2"},
-                                                               {"\\bvec2f\\b", "vec2"},
-                                                               {"\\bvec4f\\b", "vec4"},
-                                                               {"\\bu32\\b", "uint"},
-                                                               {"(\\w+): (\\w+)", "$2 $1"},
-                                                               {"fn (\\w+)(\\([^)]*\\)) -> (\\w+)", "$3 $1$2"}}));
-}
 
 TEST(ChartTransform, EntriesFillATextureRowByRow) {
     const auto texel = glsl::lumel_chart_texel(glsl::lumel_chart_index(1000, 29), 256);
     EXPECT_EQ(texel.x, 1029u - 4 * 256);
     EXPECT_EQ(texel.y, 4u);
-    EXPECT_EQ(hlsl::lumel_chart_texel(1029, 256).x, texel.x);
-    EXPECT_EQ(hlsl::lumel_chart_index(1000, 29), 1029u);
 }
 
 // A scene.glb, its layout and the numbers of its accessors.
@@ -129,14 +85,8 @@ Compared compare_forms(const LitScene& lit) {
                 EXPECT_EQ(pages.index(entry), page);
                 const glsl::vec2 uv =
                     glsl::lumel_lightmap_uv({chart_uvs.number(v, 0), chart_uvs.number(v, 1)},
-                                            {{transforms.number(entry, 0), transforms.number(entry, 1)},
-                                             {transforms.number(entry, 2), transforms.number(entry, 3)}});
-                const hlsl::float2 same =
-                    hlsl::lumel_lightmap_uv({chart_uvs.number(v, 0), chart_uvs.number(v, 1)},
-                                            {{transforms.number(entry, 0), transforms.number(entry, 1)},
-                                             {transforms.number(entry, 2), transforms.number(entry, 3)}});
-                EXPECT_EQ(uv.x, same.x);
-                EXPECT_EQ(uv.y, same.y);
+                                            {transforms.number(entry, 0), transforms.number(entry, 1),
+                                             transforms.number(entry, 2), transforms.number(entry, 3)});
                 out.worst = std::max({out.worst, std::abs(double{uv.x} - uvs.number(v, 0)) * size.width,
                                       std::abs(double{uv.y} - uvs.number(v, 1)) * size.height});
                 ++out.vertices;

@@ -1,0 +1,12 @@
+// HHD of a probe on a surface, channel by channel. Needs: hhd, probe_hemisphere.
+
+// What lumel_multiply_hemisphere_linear gives, as hemisphere, directional light and ring; I = E/pi about n.
+vec3 lumel_linear_sh_hhd(LumelLinearSh sh, vec3 n_v, vec3 n) {
+    vec3 b_c = sh.l0 * 1.12837916710;
+    vec3 x = sh.l3 * -0.65147001587;
+    vec3 y = sh.l1 * -0.65147001587;
+    vec3 z = sh.l2 * 0.65147001587;
+    return vec3(lumel_evaluate_hhd(lumel_solve_hhd_ring(b_c.x, vec3(x.x, y.x, z.x), n_v), n_v, n),
+                lumel_evaluate_hhd(lumel_solve_hhd_ring(b_c.y, vec3(x.y, y.y, z.y), n_v), n_v, n),
+                lumel_evaluate_hhd(lumel_solve_hhd_ring(b_c.z, vec3(x.z, y.z, z.z), n_v), n_v, n));
+}

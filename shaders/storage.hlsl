@@ -1,0 +1,28 @@
+// Made by scripts/shaders from storage.glsl: edit that.
+// From what a texture holds to the numbers of an encoding (docs/formats.md, "Encoded"). Light is the sample times the
+// page's `scale` (1 where halves hold it), units are the sample itself.
+
+// Numbers of [-1, 1], kept as 0.5 + 0.5 x.
+float3 lumel_decode_ratio(float3 x) {
+    return x * 2.0 - float3(1.0, 1.0, 1.0);
+}
+
+// The codes of PNG files: four bytes over 255, times the page's scale. Sample RGBM and RGBD unfiltered where their
+// alpha differs much; never filter LogLuv.
+float3 lumel_decode_rgbm(float4 x, float scale) {
+    return float3(x.x, x.y, x.z) * (x.w * scale);
+}
+
+float3 lumel_decode_rgbd(float4 x, float scale) {
+    return float3(pow(x.x, 2.2), pow(x.y, 2.2), pow(x.z, 2.2)) * (scale / max(x.w, 1.0 / 255.0));
+}
+
+// Based on: Larson 1998, "LogLuv Encoding for Full-Gamut, High-Dynamic Range Images" (the idea; 16 bits of log2 Y).
+float3 lumel_decode_logluv(float4 x, float scale) {
+    float y = exp2((255.0 * x.z + x.w - 127.0) * 0.5);
+    float s = y / max(x.y, 1.0 / 255.0);
+    float3 v = float3(x.x * s, y, s);
+    float3 rgb = float3(dot(float3(6.0014, -1.3320, 0.3008), v), dot(float3(-2.7008, 3.1029, -1.0882), v),
+                    dot(float3(-1.7996, -5.7721, 5.6268), v));
+    return rgb * scale;
+}
