@@ -98,7 +98,8 @@ Result<Choice> choose(const Options& options, const BlockSample& sample, Context
 std::uint32_t layers_of(const EncodedFormat& format, const MasterList& masters) {
     if (format.file != EncodedFile::ktx2 && format.file != EncodedFile::dds) return 0;
     const bool one_size = std::ranges::all_of(masters.pages, [&](const MasterFile& page) {
-        return page.width == masters.pages[0].width && page.height == masters.pages[0].height;
+        return page.width == masters.pages[0].width && page.height == masters.pages[0].height &&
+               page.mips.size() == masters.pages[0].mips.size();
     });
     return one_size ? static_cast<std::uint32_t>(masters.pages.size()) : 0;
 }
@@ -112,6 +113,21 @@ void print_files(const fs::path& folder, const EncodedOutput::Files& files) {
     if (files.pages.size() > kNamed) std::printf("and %zu more\n", files.pages.size() - kNamed);
 }
 
+// A page and the mips that the bake made of it: their masters are means per chart, which no filter of ours would be.
+Result<std::vector<EncodedPage>> encode_levels(const Encoding& encoding, const MasterFile& file,
+                                               const LayerWeights& layers, Context& context) {
+    std::vector<EncodedPage> out;
+    const auto add = [&](const MasterFile& level) -> Status {
+        LUMEL_TRY(const MasterPage master, read_master(level, layers));
+        LUMEL_TRY(EncodedPage page, encode_page(encoding, master, context));
+        out.push_back(std::move(page));
+        return success();
+    };
+    LUMEL_TRY_STATUS(add(file));
+    for (const MasterFile& mip : file.mips) LUMEL_TRY_STATUS(add(mip));
+    return out;
+}
+
 Status write_pages(const Options& options, const Choice& choice, const MasterList& masters, const LayerWeights& layers,
                    const LightRecord& record, RunContext& run) {
     Context& context = run.get();
@@ -119,8 +135,8 @@ Status write_pages(const Options& options, const Choice& choice, const MasterLis
     LUMEL_TRY(EncodedOutput output, EncodedOutput::create(folder, *choice.encoding, record, choice.target));
     run.interrupt().set_cleaner(output.cleaner());
     for (std::size_t p = 0; p < masters.pages.size(); ++p) {
-        LUMEL_TRY(const MasterPage master, read_master(masters.pages[p], layers));
-        LUMEL_TRY(const EncodedPage page, encode_page(*choice.encoding, master, context));
+        LUMEL_TRY(const std::vector<EncodedPage> page,
+                  encode_levels(*choice.encoding, masters.pages[p], layers, context));
         LUMEL_TRY_STATUS(output.page(page, context));
         context.report("encode", static_cast<double>(p + 1) / static_cast<double>(masters.pages.size()));
     }

@@ -51,13 +51,13 @@ def unpack_zstd(data, size):
 
 
 def read_ktx2(path):
-    """-> VkFormat, layers as bytes, width, height."""
+    """-> VkFormat, width, height, of each level its layers as bytes."""
     data = open(path, "rb").read()
     need(data[:12] == b"\xabKTX 20\xbb\r\n\x1a\n", path, "is no KTX2")
     vk, type_size, width, height, depth, layers, faces, levels, scheme = struct.unpack_from("<9I", data, 12)
     dfd_at, dfd_size, kvd_at, kvd_size, sgd_at, sgd_size = struct.unpack_from("<4I2Q", data, 48)
     name, block, edge, number, model, samples = FORMATS[vk]
-    need((type_size, depth, faces, levels) == (number, 0, 1, 1), path, "header")
+    need((type_size, depth, faces) == (number, 0, 1) and levels >= 1, path, "header")
     need((sgd_at, sgd_size) == (0, 0) and dfd_at == 80 + 24 * levels, path, "index")
     total, vendor, version, words, edges, planes = struct.unpack_from("<5IQ", data, dfd_at)
     need(total == dfd_size == 28 + 16 * samples and vendor == 0, path, "size of the descriptor")
@@ -70,10 +70,15 @@ def read_ktx2(path):
         pairs[key] = value
         at += 4 + (size + 3) // 4 * 4
     need(pairs.get(b"KTXorientation") == b"rd\0" and list(pairs) == sorted(pairs), path, "key values", pairs)
-    offset, size, unpacked = struct.unpack_from("<3Q", data, 80)
-    need(offset + size == len(data), path, "does not end with its level")
-    texels = unpack_zstd(data[offset:], unpacked) if scheme == 2 else data[offset:]
-    return vk, split(texels, layers or 1, path), width, height
+    out, end = [], len(data)
+    for level in range(levels):  # the largest first in the index and last in the file
+        offset, size, unpacked = struct.unpack_from("<3Q", data, 80 + 24 * level)
+        need(offset + size == end, path, "level", level, "does not end where the one before begins")
+        end = offset
+        texels = unpack_zstd(data[offset:offset + size], unpacked) if scheme == 2 else data[offset:offset + size]
+        need(len(texels) == (layers or 1) * level_size(vk, width, height, level), path, "size of level", level)
+        out.append(split(texels, layers or 1, path))
+    return vk, width, height, out
 
 
 def read_dds(path):
@@ -82,13 +87,25 @@ def read_dds(path):
     need(data[:4] == b"DDS " and size == 124 and flags & 0x1007 == 0x1007, path, "is no DDS")
     need(struct.unpack_from("<2I", data, 76) == (32, 4) and data[84:88] == b"DX10", path, "pixel format")
     dxgi, dimension, _, layers, _ = struct.unpack_from("<5I", data, 128)
-    need((dimension, depth, levels) == (3, 0, 1), path, "header")
+    need((dimension, depth) == (3, 0) and levels >= 1, path, "header")
+    need(bool(flags & 0x20000) == (levels > 1), path, "flag of mips")
     vk = DXGI[dxgi]
     _, block, edge, *_ = FORMATS[vk]
     across, down = -(-width // edge), -(-height // edge)
     need(pitch == across * block * (down if edge > 1 else 1), path, "pitch", pitch)
-    need(len(data) == 148 + layers * across * down * block, path, "size")
-    return vk, split(data[148:], layers, path), width, height
+    sizes = [level_size(vk, width, height, level) for level in range(levels)]
+    need(len(data) == 148 + layers * sum(sizes), path, "size")
+    out, at = [[] for _ in sizes], 148
+    for _ in range(layers):
+        for level, size in enumerate(sizes):
+            out[level].append(data[at:at + size])
+            at += size
+    return vk, width, height, out
+
+
+def level_size(vk, width, height, level):
+    _, block, edge, *_ = FORMATS[vk]
+    return -(-max(width >> level, 1) // edge) * -(-max(height >> level, 1) // edge) * block
 
 
 def split(data, layers, path):
@@ -243,12 +260,17 @@ def read_texture(gl, folder, texture, place, format_name, cache):
     if format_name in ("ktx2", "dds"):
         if path not in cache:
             cache[path] = read_ktx2(path) if format_name == "ktx2" else read_dds(path)
-        vk, layers, width, height = cache[path]
+        vk, width, height, levels = cache[path]
         need(vk == texture["vk_format"], path, "vkFormat", vk)
-        return decode(gl, vk, layers[place["layer"]], width, height)
+        level = place["level"]
+        return decode(gl, vk, levels[level][place["layer"]], max(width >> level, 1), max(height >> level, 1))
     if path.endswith(".hdr"):
         return read_hdr(path)
     return read_png(path) if texture["texels"] == "R8G8B8A8_UNORM" else read_light(path, texture["texels"])
+
+
+def with_mips(pages):
+    return [level for page in pages for level in [page, *page["mips"]]]
 
 
 def check_one(gl, lumel, bake, encoding, options, limit):
@@ -256,7 +278,9 @@ def check_one(gl, lumel, bake, encoding, options, limit):
     folder, description = encode(lumel, bake, encoding, options)
     kinds = {c["name"]: c["kind"] for c in description["channels"]}
     cache, worst = {}, 0.0
-    for page, exr_page in zip(description["pages"], exr["pages"]):
+    pages, exr_pages = with_mips(description["pages"]), with_mips(exr["pages"])
+    need(len(pages) == len(exr_pages), encoding, "has", len(pages), "pages and mips, EXR files", len(exr_pages))
+    for page, exr_page in zip(pages, exr_pages):
         truth = read_exr(os.path.join(exr_folder, exr_page["file"]))
         covered = np.any([plane != 0 for plane in truth.values()], axis=0)
         need(covered.any(), encoding, "has an empty page")
@@ -270,7 +294,9 @@ def check_one(gl, lumel, bake, encoding, options, limit):
                 error = close(value[covered], truth[name][covered], "light" in kind)
                 need(error <= limit, encoding, options, place["file"], name, "is off by", error)
                 worst = max(worst, error)
-    print(f"{encoding} {' '.join(options)}: {len(description['pages'])} pages, worst error {worst:.4f}")
+    for vk, _, _, levels in cache.values():
+        need(len(levels) == 1 + len(description["pages"][0]["mips"]), encoding, "levels", len(levels))
+    print(f"{encoding} {' '.join(options)}: {len(pages)} pages and mips, worst error {worst:.4f}")
 
 
 def check(gl, lumel, bake):

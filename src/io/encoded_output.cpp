@@ -48,7 +48,10 @@ Json textures_json(const Encoding& encoding, const std::vector<StoredTexture>& l
 Json places_json(const std::vector<TexturePages::Place>& places) {
     Json out = Json::array();
     for (const TexturePages::Place& place : places)
-        out.push_back({{"file", place.file}, {"layer", place.layer}, {"scale", json_number(place.scale)}});
+        out.push_back({{"file", place.file},
+                       {"layer", place.layer},
+                       {"level", place.level},
+                       {"scale", json_number(place.scale)}});
     return out;
 }
 
@@ -67,17 +70,27 @@ Result<EncodedOutput> EncodedOutput::create(const fs::path& folder, const Encodi
     return EncodedOutput(std::move(files), encoding, record, target);
 }
 
-Status EncodedOutput::write_exr_page(const EncodedPage& page, Context& context) {
-    const std::string name = encoded_page_file(encoding_->name, static_cast<std::uint32_t>(pages_.size()));
-    LUMEL_TRY(std::string type, write_encoded_page(partial() / name, *encoding_, page, context));
-    pages_.push_back({page.width, page.height, std::move(type)});
-    return success();
+Result<std::string> EncodedOutput::write_exr_page(const EncodedPage& page, std::uint32_t mip, Context& context) {
+    const std::string name = encoded_page_file(encoding_->name, static_cast<std::uint32_t>(pages_.size()), mip);
+    return write_encoded_page(partial() / name, *encoding_, page, context);
 }
 
-Status EncodedOutput::page(const EncodedPage& page, Context& context) {
-    const Status status = textures_ ? textures_->add(page, context) : write_exr_page(page, context);
-    if (!status.ok()) return files_.in_place(status.error());
-    if (textures_) pages_.push_back({page.width, page.height, {}});
+Status EncodedOutput::page(std::span<const EncodedPage> levels, Context& context) {
+    if (textures_) {
+        const Status status = textures_->add(levels, context);
+        if (!status.ok()) return files_.in_place(status.error());
+    }
+    std::vector<Level> page;
+    for (std::uint32_t mip = 0; mip < levels.size(); ++mip) {
+        std::string type;
+        if (!textures_) {
+            Result<std::string> written = write_exr_page(levels[mip], mip, context);
+            if (!written.ok()) return files_.in_place(written.error());
+            type = std::move(*written);
+        }
+        page.push_back({levels[mip].width, levels[mip].height, std::move(type)});
+    }
+    pages_.push_back(std::move(page));
     return success();
 }
 
@@ -98,15 +111,21 @@ std::string EncodedOutput::json() const {
         out["storage"] = target_.storage->name;
         out["textures"] = textures_json(*encoding_, textures_->layout());
     }
-    for (std::size_t p = 0; p < pages_.size(); ++p) {
-        Json page = Json::object();
-        if (!textures_) page["file"] = encoded_page_file(encoding_->name, static_cast<std::uint32_t>(p));
-        page["width"] = pages_[p].width;
-        page["height"] = pages_[p].height;
+    const auto level_json = [&](std::uint32_t p, std::uint32_t mip) {
+        Json level = Json::object();
+        if (!textures_) level["file"] = encoded_page_file(encoding_->name, p, mip);
+        level["width"] = pages_[p][mip].width;
+        level["height"] = pages_[p][mip].height;
         if (textures_)
-            page["textures"] = places_json(textures_->places(p));
+            level["textures"] = places_json(textures_->places(p, mip));
         else
-            page["type"] = pages_[p].type;
+            level["type"] = pages_[p][mip].type;
+        return level;
+    };
+    for (std::uint32_t p = 0; p < pages_.size(); ++p) {
+        Json page = level_json(p, 0);
+        page["mips"] = Json::array();
+        for (std::uint32_t mip = 1; mip < pages_[p].size(); ++mip) page["mips"].push_back(level_json(p, mip));
         out["pages"].push_back(std::move(page));
     }
     return out.dump(2) + "\n";
@@ -114,14 +133,15 @@ std::string EncodedOutput::json() const {
 
 EncodedOutput::Files EncodedOutput::files() const {
     Files out{encoded_stem(encoding_->name) + ".json", {}};
-    for (std::size_t p = 0; p < pages_.size(); ++p) {
-        if (!textures_) {
-            out.pages.push_back(encoded_page_file(encoding_->name, static_cast<std::uint32_t>(p)));
-            continue;
+    for (std::uint32_t p = 0; p < pages_.size(); ++p)
+        for (std::uint32_t mip = 0; mip < pages_[p].size(); ++mip) {
+            if (!textures_) {
+                out.pages.push_back(encoded_page_file(encoding_->name, p, mip));
+                continue;
+            }
+            for (const TexturePages::Place& place : textures_->places(p, mip))
+                if (std::ranges::find(out.pages, place.file) == out.pages.end()) out.pages.push_back(place.file);
         }
-        for (const TexturePages::Place& place : textures_->places(p))
-            if (std::ranges::find(out.pages, place.file) == out.pages.end()) out.pages.push_back(place.file);
-    }
     return out;
 }
 

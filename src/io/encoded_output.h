@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,8 +29,8 @@ public:
     // FileSet::cleaner.
     [[nodiscard]] std::function<void()> cleaner() const { return files_.cleaner(); }
 
-    // Writes the next page.
-    Status page(const EncodedPage& page, Context& context);
+    // Writes the next page, which is followed by its mips.
+    Status page(std::span<const EncodedPage> levels, Context& context);
 
     // Moves all into place, the JSON last: a reader who finds it finds the pages that it names. Files of an older run,
     // in this format or another, go where these do not replace them. An error where the bake was replaced since its
@@ -44,20 +45,21 @@ public:
     [[nodiscard]] Files files() const;
 
 private:
-    struct Page {
+    struct Level {
         std::uint32_t width, height;
         std::string type;  // of EXR
     };
     EncodedOutput(FileSet files, const Encoding& encoding, LightRecord record, const EncodedTarget& target);
-    Status write_exr_page(const EncodedPage& page, Context& context);
+    // The type of its light.
+    Result<std::string> write_exr_page(const EncodedPage& page, std::uint32_t mip, Context& context);
     [[nodiscard]] std::string json() const;
 
     FileSet files_;
     const Encoding* encoding_;
     LightRecord record_;
     EncodedTarget target_;
-    std::optional<TexturePages> textures_;  // none for EXR
-    std::vector<Page> pages_;
+    std::optional<TexturePages> textures_;   // none for EXR
+    std::vector<std::vector<Level>> pages_;  // each followed by its mips
 };
 
 }  // namespace lumel

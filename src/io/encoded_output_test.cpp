@@ -43,7 +43,7 @@ protected:
         Result<EncodedOutput> out = EncodedOutput::create(bake_, kIrradZHhd, record_, target);
         for (std::size_t p = 0; p < count && out.ok(); ++p) {
             const EncodedPage page{3, 2, {0, kNone, kNone, kNone, kNone, kNone}, {Numbers{1, 2, 3, 0.5f, 0, 0}}};
-            EXPECT_TRUE(out->page(page, context_).ok());
+            EXPECT_TRUE(out->page({&page, 1}, context_).ok());
         }
         return out;
     }
@@ -65,8 +65,11 @@ TEST_F(EncodedFiles, AreDescribedAsTheSchemaSays) {
     EXPECT_EQ(json["layers"], Json({"direct", "indirect"}));
     EXPECT_EQ(json["channels"].size(), kIrradZHhd.fields.size());
     ASSERT_EQ(json["pages"].size(), 2u);
-    EXPECT_EQ(json["pages"][1],
-              Json({{"file", "encoded_irradz-hhd_1.exr"}, {"width", 3}, {"height", 2}, {"type", "half"}}));
+    EXPECT_EQ(json["pages"][1], Json({{"file", "encoded_irradz-hhd_1.exr"},
+                                      {"width", 3},
+                                      {"height", 2},
+                                      {"type", "half"},
+                                      {"mips", Json::array()}}));
     Json broken = json;
     broken["pages"][0]["type"] = "double";
     EXPECT_FALSE(schema.errors(broken).empty());
@@ -120,6 +123,62 @@ TEST_F(EncodedFiles, OfPagesOfOneSizeAreLayers) {
     ASSERT_TRUE(apart.ok() && apart->commit(masters()).ok());
     EXPECT_EQ(word("encoded_irradz-hhd_w-d_1.ktx2", 32), 0u) << "no array";
     EXPECT_FALSE(fs::exists(bake_ / "encoded_irradz-hhd_I.ktx2"));
+}
+
+// A page of 8 x 8 and its mips: levels of one file where files have levels, else a file each; one scale for all.
+TEST_F(EncodedFiles, HoldTheMipsOfTheirPages) {
+    const test::JsonSchema schema(json_file(std::string(LUMEL_SOURCE_DIR) + "/docs/schema/encoded.schema.json"));
+    std::vector<EncodedPage> levels;
+    for (const std::uint32_t edge : {8u, 4u, 2u}) {
+        // The second mip is the brightest, beyond all halves.
+        const float light = edge == 4 ? 1e6f : 100.0f;
+        std::vector<std::uint32_t> texel_at(std::size_t{edge} * edge, 0);
+        levels.push_back({edge, edge, std::move(texel_at), {Numbers{light, light, light, 0.5f, 0, 0}}});
+    }
+    for (const EncodedFormat& format : encoded_formats()) {
+        SCOPED_TRACE(format.name);
+        const bool is_exr = format.file == EncodedFile::exr;
+        const bool has_levels = format.file == EncodedFile::ktx2 || format.file == EncodedFile::dds;
+        EncodedTarget target{&format, nullptr, BcQuality::fast, has_levels ? 2u : 0u};
+        if (!is_exr) target.storage = find_texture_storage(format.storage ? format.storage : "bc7");
+        {
+            auto output = EncodedOutput::create(bake_, kIrradZHhd, record_, target);
+            ASSERT_TRUE(output.ok()) << output.error().text();
+            for (int page = 0; page < 2; ++page) ASSERT_TRUE(output->page(levels, context_).ok());
+            ASSERT_TRUE(output->commit(masters()).ok());
+        }
+        const Json json = json_file(bake_ / "encoded_irradz-hhd.json");
+        for (const std::string& line : schema.errors(json)) ADD_FAILURE() << line;
+        Names files{"manifest.json", "encoded_irradz-hhd.json"};
+        for (const Json& page : json["pages"]) {
+            ASSERT_EQ(page["mips"].size(), 2u);
+            if (is_exr) files.insert(page["file"]);
+            for (std::size_t t = 0; !is_exr && t < page["textures"].size(); ++t) {
+                EXPECT_EQ(page["textures"][t]["level"], 0);
+                files.insert(page["textures"][t]["file"]);
+            }
+            for (std::size_t mip = 1; mip <= 2; ++mip) {
+                const Json& level = page["mips"][mip - 1];
+                EXPECT_EQ(level["width"], 8u >> mip);
+                if (is_exr) {
+                    files.insert(level["file"]);
+                    continue;
+                }
+                ASSERT_EQ(level["textures"].size(), page["textures"].size());
+                for (std::size_t t = 0; t < level["textures"].size(); ++t) {
+                    EXPECT_EQ(level["textures"][t]["level"], has_levels ? mip : 0);
+                    EXPECT_EQ(level["textures"][t]["scale"], page["textures"][t]["scale"]);
+                    files.insert(level["textures"][t]["file"]);
+                }
+            }
+            if (has_levels) {
+                EXPECT_GE(page["textures"][0]["scale"].get<float>(), 1e6f / 65504.0f) << "holds the brightest mip";
+            }
+        }
+        // Of two textures: two files; else each of two pages in three sizes, of EXR in one file.
+        EXPECT_EQ(files.size(), 2u + (has_levels ? 2u : is_exr ? 6u : 12u));
+        EXPECT_EQ(names_in(bake_), files) << "and nothing of the format before is left";
+    }
 }
 
 TEST_F(EncodedFiles, AppearTogetherAndReplaceAllOlderOnes) {

@@ -41,8 +41,8 @@ std::string encoded_texture_file(const Encoding& encoding, const StoredTexture& 
 }
 
 std::string encoded_texture_file(const Encoding& encoding, const StoredTexture& texture, const EncodedFormat& format,
-                                 std::uint32_t page) {
-    return stem(encoding, texture) + "_" + std::to_string(page) + extension_of(texture, format);
+                                 std::uint32_t page, std::uint32_t mip) {
+    return stem(encoding, texture) + "_" + page_and_mip(page, mip) + extension_of(texture, format);
 }
 
 bool is_encoded_texture_file(const Encoding& encoding, const std::string& name) {
@@ -51,7 +51,7 @@ bool is_encoded_texture_file(const Encoding& encoding, const std::string& name) 
         for (const StoredTexture& texture : texture_layout(encoding, storage))
             for (const char* extension : {".ktx2", ".dds", ".png", ".hdr"})
                 if (name == stem(encoding, texture) + extension ||
-                    is_numbered(name, stem(encoding, texture) + "_", extension))
+                    is_numbered_with_mip(name, stem(encoding, texture) + "_", extension))
                     return true;
     return false;
 }

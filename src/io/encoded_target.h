@@ -31,10 +31,10 @@ struct EncodedTarget {
     std::uint32_t layers = 0;
 };
 
-// "encoded_l1-hhd_L1n-R.ktx2", or with the page: "encoded_l1-hhd_L1n-R_0.png".
+// "encoded_l1-hhd_L1n-R.ktx2", or with the page, and the mip in a file of its own: "encoded_l1-hhd_L1n-R_0_mip1.png".
 std::string encoded_texture_file(const Encoding& encoding, const StoredTexture& texture, const EncodedFormat& format);
 std::string encoded_texture_file(const Encoding& encoding, const StoredTexture& texture, const EncodedFormat& format,
-                                 std::uint32_t page);
+                                 std::uint32_t page, std::uint32_t mip = 0);
 // Is it the name of such a file, in any format and storage?
 bool is_encoded_texture_file(const Encoding& encoding, const std::string& name);
 

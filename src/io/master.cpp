@@ -40,6 +40,35 @@ std::vector<std::string> channel_names(const LayerWeights& layers) {
     return out;
 }
 
+// A page of the manifest, or one of its mips.
+Result<MasterFile> parse_master(const Json& page, const std::filesystem::path& folder, const std::string& here) {
+    LUMEL_TRY(const std::uint64_t width, required_count(page, "width", here));
+    LUMEL_TRY(const std::uint64_t height, required_count(page, "height", here));
+    const Json* files = find(page, "files");
+    const Json* master = files ? find(*files, "master") : nullptr;
+    if (!master) return invalid(here, "names no master", kGiveABake);
+    LUMEL_TRY(const std::string file, required_string(*master, "file", here));
+    if (std::filesystem::path(file).filename() != file)
+        return invalid(here, "names a master outside its folder: " + file, kGiveABake);
+    if (width == 0 || height == 0 || width > kLargestPage || height > kLargestPage)
+        return invalid(here, "is of a size that no bake writes", kGiveABake);
+    return MasterFile{folder / file, static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), {}};
+}
+
+// Each mip has half the edge of the one before.
+Status parse_mips(const Json& page, const std::filesystem::path& folder, const std::string& here, MasterFile& out) {
+    for (std::size_t k = 0; k < array_size(page, "mips"); ++k) {
+        const std::string of_mip = here + ", mip " + std::to_string(k + 1);
+        LUMEL_TRY(const Json* mip, element(page, "mips", k, here));
+        LUMEL_TRY(MasterFile master, parse_master(*mip, folder, of_mip));
+        const MasterFile& before = k == 0 ? out : out.mips.back();
+        if (2 * master.width != before.width || 2 * master.height != before.height)
+            return invalid(of_mip, "is not half as wide and high as the one before", kGiveABake);
+        out.mips.push_back(std::move(master));
+    }
+    return success();
+}
+
 class MasterReader {
 public:
     MasterReader(const LayerWeights& layers, std::string where) : layers_(layers), where_(std::move(where)) {}
@@ -143,17 +172,9 @@ Result<MasterList> parse_master_list(std::string_view manifest, const std::files
     for (std::size_t p = 0; p < array_size(json, "pages"); ++p) {
         const std::string here = where + ": page " + std::to_string(p);
         LUMEL_TRY(const Json* page, element(json, "pages", p, where));
-        LUMEL_TRY(const std::uint64_t width, required_count(*page, "width", here));
-        LUMEL_TRY(const std::uint64_t height, required_count(*page, "height", here));
-        const Json* files = find(*page, "files");
-        const Json* master = files ? find(*files, "master") : nullptr;
-        if (!master) return invalid(here, "names no master", kGiveABake);
-        LUMEL_TRY(const std::string file, required_string(*master, "file", here));
-        if (std::filesystem::path(file).filename() != file)
-            return invalid(here, "names a master outside its folder: " + file, kGiveABake);
-        if (width == 0 || height == 0 || width > kLargestPage || height > kLargestPage)
-            return invalid(here, "is of a size that no bake writes", kGiveABake);
-        out.pages.push_back({folder / file, static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)});
+        LUMEL_TRY(MasterFile master, parse_master(*page, folder, here));
+        LUMEL_TRY_STATUS(parse_mips(*page, folder, here, master));
+        out.pages.push_back(std::move(master));
     }
     if (out.pages.empty()) return invalid(where, "describes no pages", kGiveABake);
     return out;

@@ -29,6 +29,7 @@ struct MasterPage {
 struct MasterFile {
     std::filesystem::path file;
     std::uint32_t width = 0, height = 0;
+    std::vector<MasterFile> mips;  // from mip 1 on, as many as the bake wrote; these have none
 };
 struct MasterList {
     std::filesystem::path manifest;

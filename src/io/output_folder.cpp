@@ -37,7 +37,8 @@ bool is_encoded_file(const std::string& name) {
 }  // namespace
 
 bool is_encoded_page_file(const Encoding& encoding, const std::string& name) {
-    return is_numbered(name, encoded_stem(encoding.name) + "_", ".exr") || is_encoded_texture_file(encoding, name);
+    return is_numbered_with_mip(name, encoded_stem(encoding.name) + "_", ".exr") ||
+           is_encoded_texture_file(encoding, name);
 }
 
 bool is_output_file(const std::string& name) {

@@ -70,10 +70,12 @@ constexpr LightUnit unit_of(PageFile kind) {
 
 // "lightmap_0.exr"; of a mip of the page "lightmap_0_mip1.exr".
 inline constexpr const char* kMipMark = "_mip";
+inline std::string page_and_mip(std::uint32_t page, std::uint32_t mip) {
+    return std::to_string(page) + (mip == 0 ? std::string() : kMipMark + std::to_string(mip));
+}
 inline std::string page_file(PageFile kind, std::uint32_t page, std::uint32_t mip = 0) {
     const PageFileName name = page_file_name(kind);
-    const std::string of_mip = mip == 0 ? std::string() : kMipMark + std::to_string(mip);
-    return name.stem + std::to_string(page) + of_mip + name.extension;
+    return name.stem + page_and_mip(page, mip) + name.extension;
 }
 
 // Is a name this stem, digits, this extension?
@@ -84,21 +86,25 @@ inline bool is_numbered(std::string_view name, std::string_view stem, std::strin
     return std::ranges::all_of(number, [](char c) { return c >= '0' && c <= '9'; });
 }
 
+// The same, or with a mip behind the number: this stem, digits, "_mip", digits, this extension?
+inline bool is_numbered_with_mip(std::string_view name, std::string_view stem, std::string_view extension) {
+    if (is_numbered(name, stem, extension)) return true;
+    const std::size_t mark = name.find(kMipMark, stem.size());
+    if (mark == std::string_view::npos) return false;
+    return is_numbered(name.substr(mark), kMipMark, extension) && is_numbered(name.substr(0, mark), stem, "");
+}
+
 // Is it page_file() of some page or mip?
 inline bool is_page_file(PageFile kind, std::string_view name) {
     const PageFileName pattern = page_file_name(kind);
-    if (is_numbered(name, pattern.stem, pattern.extension)) return true;
-    const std::size_t mark = name.find(kMipMark, std::string_view(pattern.stem).size());
-    if (mark == std::string_view::npos) return false;
-    return is_numbered(name.substr(mark), kMipMark, pattern.extension) &&
-           is_numbered(name.substr(0, mark), pattern.stem, "");
+    return is_numbered_with_mip(name, pattern.stem, pattern.extension);
 }
 
-// "encoded_l2": of what `lumel encode` writes, as .json and, for each page, _<page>.exr;
+// "encoded_l2": of what `lumel encode` writes, as .json and, for each page and mip, _<page>.exr, _<page>_mip<k>.exr;
 // textures are in encoded_target.h.
 inline std::string encoded_stem(const std::string& encoding) { return "encoded_" + encoding; }
-inline std::string encoded_page_file(const std::string& encoding, std::uint32_t page) {
-    return encoded_stem(encoding) + "_" + std::to_string(page) + ".exr";
+inline std::string encoded_page_file(const std::string& encoding, std::uint32_t page, std::uint32_t mip = 0) {
+    return encoded_stem(encoding) + "_" + page_and_mip(page, mip) + ".exr";
 }
 
 }  // namespace lumel

@@ -1,11 +1,11 @@
 #include "io/texture_pages.h"
 
-#include <array>
+#include <algorithm>
+#include <utility>
 
 #include "base/check.h"
 #include "base/try.h"
 #include "io/image_io.h"
-#include "texture/stored_page.h"
 
 namespace lumel {
 namespace {
@@ -38,6 +38,7 @@ TexturePages::TexturePages(std::filesystem::path folder, const Encoding& encodin
     layout_ = texture_layout(encoding, *target.storage);
     LUMEL_CHECK(!layout_.empty(), encoding.name);
     layers_.resize(layout_.size());
+    for (TextureArray& array : layers_) array.layers = 0;
 }
 
 Status TexturePages::write(std::size_t texture, const std::string& file, const TextureArray& texels) const {
@@ -59,34 +60,59 @@ Status TexturePages::write(std::size_t texture, const std::string& file, const T
     return success();
 }
 
-Result<TexturePages::Place> TexturePages::add_texture(std::size_t texture, const EncodedPage& page, Context& context) {
-    LUMEL_TRY(StoredPage stored, store_page(*encoding_, layout_[texture], page, target_.quality, context));
-    Place place{{}, 0, stored.scale};
-    if (target_.layers == 0) {
-        const auto number = static_cast<std::uint32_t>(pages_.size());
-        place.file = encoded_texture_file(*encoding_, layout_[texture], *target_.format, number);
-        LUMEL_TRY_STATUS(write(texture, place.file,
-                               {layout_[texture].format, page.width, page.height, 1, {std::move(stored.texels)}}));
-        return place;
+// Each in a file of its own.
+Status TexturePages::write_mips(std::size_t texture, std::span<const EncodedPage> levels, StoredLevels stored,
+                                std::vector<Place>& places) const {
+    const auto page = static_cast<std::uint32_t>(pages_.size());
+    for (std::uint32_t mip = 0; mip < levels.size(); ++mip) {
+        std::string file = encoded_texture_file(*encoding_, layout_[texture], *target_.format, page, mip);
+        LUMEL_TRY_STATUS(write(
+            texture, file,
+            {layout_[texture].format, levels[mip].width, levels[mip].height, 1, {std::move(stored.texels[mip])}}));
+        places.push_back({std::move(file), 0, 0, stored.scale});
     }
-    TextureArray& array = layers_[texture];
-    if (pages_.empty()) array = {layout_[texture].format, page.width, page.height, 0, {{}}};
-    LUMEL_CHECK(page.width == array.width && page.height == array.height, page.width, page.height);
-    place.file = encoded_texture_file(*encoding_, layout_[texture], *target_.format);
-    place.layer = array.layers++;
-    array.levels[0].insert(array.levels[0].end(), stored.texels.begin(), stored.texels.end());
-    if (array.layers == target_.layers) {
-        LUMEL_TRY_STATUS(write(texture, place.file, array));
-        array = {};
-    }
-    return place;
+    return success();
 }
 
-Status TexturePages::add(const EncodedPage& page, Context& context) {
+Result<std::vector<TexturePages::Place>> TexturePages::add_texture(std::size_t texture,
+                                                                   std::span<const EncodedPage> levels,
+                                                                   Context& context) {
+    const EncodedPage& page = levels[0];
+    const StoredTexture& layout = layout_[texture];
+    LUMEL_TRY(StoredLevels stored, store_levels(*encoding_, layout, levels, target_.quality, context));
     std::vector<Place> places;
+    if (target_.format->file != EncodedFile::ktx2 && target_.format->file != EncodedFile::dds) {
+        LUMEL_TRY_STATUS(write_mips(texture, levels, std::move(stored), places));
+        return places;
+    }
+    Place place{{}, 0, 0, stored.scale};
+    TextureArray& array = layers_[texture];
+    if (array.layers == 0)
+        array = {layout.format, page.width, page.height, 0, std::vector<std::vector<std::uint8_t>>(levels.size())};
+    LUMEL_CHECK(page.width == array.width && page.height == array.height, page.width, page.height);
+    LUMEL_CHECK(levels.size() == array.levels.size(), levels.size(), array.levels.size());
+    place.file = target_.layers == 0 ? encoded_texture_file(*encoding_, layout, *target_.format,
+                                                            static_cast<std::uint32_t>(pages_.size()))
+                                     : encoded_texture_file(*encoding_, layout, *target_.format);
+    place.layer = array.layers++;
+    for (; place.level < levels.size(); ++place.level) {
+        const std::vector<std::uint8_t>& texels = stored.texels[place.level];
+        array.levels[place.level].insert(array.levels[place.level].end(), texels.begin(), texels.end());
+        places.push_back(place);
+    }
+    if (array.layers == std::max(target_.layers, 1u)) {
+        LUMEL_TRY_STATUS(write(texture, place.file, array));
+        array.layers = 0;
+        array.levels.clear();
+    }
+    return places;
+}
+
+Status TexturePages::add(std::span<const EncodedPage> levels, Context& context) {
+    std::vector<std::vector<Place>> places(levels.size());
     for (std::size_t t = 0; t < layout_.size(); ++t) {
-        LUMEL_TRY(Place place, add_texture(t, page, context));
-        places.push_back(std::move(place));
+        LUMEL_TRY(std::vector<Place> of_texture, add_texture(t, levels, context));
+        for (std::size_t mip = 0; mip < levels.size(); ++mip) places[mip].push_back(std::move(of_texture[mip]));
     }
     pages_.push_back(std::move(places));
     return success();

@@ -18,10 +18,13 @@ std::span<const Field> fields_of(const Encoding& encoding, const StoredTexture& 
     return encoding.fields.subspan(texture.first, texture.count);
 }
 
-float scale_of(const Encoding& encoding, const StoredTexture& texture, const EncodedPage& page) {
+float scale_of(const Encoding& encoding, const StoredTexture& texture, std::span<const EncodedPage> levels) {
     const float largest = format_info(texture.format).largest;
     if (!is_light(fields_of(encoding, texture)[0].kind) || largest == 0.0f) return 1.0f;
-    const LightRange range = light_range(page.numbers, texture.first, texture.count);
+    LightRange range = light_range(levels[0].numbers, texture.first, texture.count);
+    // Numbers that encodings solve from a mean may be larger than any of which it is the mean.
+    for (const EncodedPage& mip : levels.subspan(1))
+        range.largest = std::max(range.largest, light_range(mip.numbers, texture.first, texture.count).largest);
     if (range.largest == 0.0f) return 1.0f;
     if (largest < kLargestOfHalves) return range.largest / largest;  // codes with a range of their own
     if (halves_hold(range)) return 1.0f;
@@ -75,25 +78,39 @@ Mapping mapping_of(FieldKind kind, float scale) {
     return kind == FieldKind::ratio ? Mapping{0.5f, 0.5f} : Mapping{0.0f, 1.0f};
 }
 
-}  // namespace
-
-Result<StoredPage> store_page(const Encoding& encoding, const StoredTexture& texture, const EncodedPage& page,
-                              BcQuality quality, Context& context) {
-    StoredPage out;
-    out.scale = scale_of(encoding, texture, page);
+Result<std::vector<std::uint8_t>> store_level(const Encoding& encoding, const StoredTexture& texture,
+                                              const EncodedPage& page, float scale, BcQuality quality,
+                                              Context& context) {
     const std::span<const Field> fields = fields_of(encoding, texture);
     Image image(page.width, page.height, texture.count);
     for (std::size_t i = 0; i < page.texel_at.size(); ++i) {
         if (page.texel_at[i] == kNone) continue;
         const Numbers& numbers = page.numbers[page.texel_at[i]];
         for (std::size_t c = 0; c < texture.count; ++c) {
-            const Mapping mapping = mapping_of(fields[c].kind, out.scale);
+            const Mapping mapping = mapping_of(fields[c].kind, scale);
             image.data[i * texture.count + c] = mapping.offset + mapping.factor * numbers[texture.first + c];
         }
     }
-    const std::vector<float> weights = weights_of(encoding, texture, page);
-    LUMEL_TRY(out.texels, encode_texels(texture.format, image, weights, quality, context));
+    return encode_texels(texture.format, image, weights_of(encoding, texture, page), quality, context);
+}
+
+}  // namespace
+
+Result<StoredLevels> store_levels(const Encoding& encoding, const StoredTexture& texture,
+                                  std::span<const EncodedPage> levels, BcQuality quality, Context& context) {
+    StoredLevels out;
+    out.scale = scale_of(encoding, texture, levels);
+    for (const EncodedPage& level : levels) {
+        LUMEL_TRY(std::vector<std::uint8_t> texels, store_level(encoding, texture, level, out.scale, quality, context));
+        out.texels.push_back(std::move(texels));
+    }
     return out;
+}
+
+Result<StoredPage> store_page(const Encoding& encoding, const StoredTexture& texture, const EncodedPage& page,
+                              BcQuality quality, Context& context) {
+    LUMEL_TRY(StoredLevels stored, store_levels(encoding, texture, {&page, 1}, quality, context));
+    return StoredPage{std::move(stored.texels[0]), stored.scale};
 }
 
 void read_back(const Encoding& encoding, const StoredTexture& texture, const StoredPage& stored, EncodedPage& page) {

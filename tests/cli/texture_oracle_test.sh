@@ -15,8 +15,8 @@ check() {
 # Pages of several sizes: files of their own.
 expect 0 '' bake gallery.glb -o apart --preset preview --samples 16 --views 0 --max-page 96 --texels-per-metre 6
 check "$@" apart
-# Three of one size: layers.
-expect 0 '' bake ok.gltf -o layers "${quick[@]}"
+# Three of one size: layers, with three levels each.
+expect 0 '' bake ok.gltf -o layers "${quick[@]}" --mips 2
 "$3" - <<'EOF'
 import json
 with open("layers/manifest.json") as text:
@@ -27,4 +27,5 @@ with open("layers/manifest.json", "w") as text:
 EOF
 check "$@" layers
 grep -q '"layer": 2' layers/*/encoded_l1-hhd.json || complain 'no layers'
+grep -q '"level": 2' layers/*/encoded_l1-hhd.json || complain 'no levels'
 finish
