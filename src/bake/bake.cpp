@@ -42,9 +42,9 @@
 namespace lumel {
 namespace {
 
-// Texels that are shared out where no density is asked: those of the one page, or the preset's.
+// Texels that are shared out where no density is asked: those of the one page, or those that bytes or the preset allow.
 double texel_budget(const BakeOptions& options) {
-    if (options.resolution_width == 0) return preset_values(options.preset).texel_budget;
+    if (options.resolution_width == 0) return chart_options(options).texel_budget;
     return static_cast<double>(options.resolution_width) * options.resolution_height;
 }
 

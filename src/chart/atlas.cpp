@@ -1,6 +1,7 @@
 // make_atlas: how large each chart is drawn and where it lies.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <span>
@@ -73,6 +74,26 @@ Status check_page_choice(const ChartOptions& options) {
     return success();
 }
 
+Status check_byte_budget(const ChartOptions& options, bool scene_wide) {
+    if (options.max_bytes == 0) return success();
+    const auto bad = [](const char* what, const char* remedy) {
+        return Error{ErrorCode::usage, std::string("--max-bytes does not go with ") + what, {}, remedy};
+    };
+    if (scene_wide)
+        return bad("a TEXCOORD_1 that is kept as one atlas of the scene", "take --uv1 mesh or ignore, or --resolution");
+    if (options.texels_per_metre > 0.0) return bad("--texels-per-metre: it solves the density", "leave one out");
+    if (options.resolution_width != 0) return bad("--resolution, which is of one page", "leave one out");
+    if (options.previous) return bad("--atlas, whose density stays", "leave one out");
+    return success();
+}
+
+// Texels of a page and its mips over those of the page.
+double mip_sum(const MaskRule& masks) {
+    double sum = 1.0;
+    for (std::uint32_t mip = 1; mip <= masks.mips; ++mip) sum += std::ldexp(1.0, -2 * static_cast<int>(mip));
+    return sum;
+}
+
 // The middle of the box around each instance.
 std::vector<Vec3> instance_centres(const Scene& scene, const WorldGeometry& geometry) {
     std::vector<Vec3> out;
@@ -125,6 +146,7 @@ private:
     Status fill_pages() {
         const SizeLimit limit = SizeLimit::of_page(options_.max_page, options_.max_page, options_.masks);
         if (limit.width < 2) return no_room();
+        if (options_.max_bytes > 0) return fill_bytes(limit);
         density_ = options_.texels_per_metre;
         if (!(density_ > 0.0)) {
             // A budget that the smallest charts eat by more than half is too small to be meant.
@@ -132,15 +154,77 @@ private:
                 std::max(options_.texel_budget, 2.0 * least_texels(instances_, BudgetOf::baked, options_.masks));
             LUMEL_TRY(density_, solve_density(charts_, instances_, budget, BudgetOf::baked, limit, context_));
         }
+        LUMEL_TRY(const bool fits, try_pages(limit));
+        if (!fits) return no_room();
+        report_clamped();
+        return success();
+    }
+
+    // At density_.
+    Result<bool> try_pages(SizeLimit limit) {
         LUMEL_TRY_STATUS(draw(limit, options_.sizes));
         const std::uint32_t max_page = options_.max_page / cell();
         const bool clusters = options_.page_clusters || options_.pages != 0;
         packing_ = clusters ? pack_clusters(sized_.masks, items(), places(), max_page, options_.pages, context_)
                             : pack(sized_.masks, items(), max_page, context_);
         if (context_.cancelled()) return cancelled_error();
-        if (!packing_.complete) return no_room();
+        return packing_.complete;
+    }
+
+    // The highest density found whose pages, as they are packed, take no more than max_bytes. Bytes do not quite grow
+    // with the density, for pages are of whole rows and the packer has better and worse days: the search ends where
+    // kNear of the budget is used, or the bracket is narrow, or after kSteps.
+    Status fill_bytes(SizeLimit limit) {
+        constexpr int kSteps = 16;
+        constexpr double kNear = 0.99, kNarrow = 1.002, kMargin = 0.02, kSmallest = 1e-6;
+        const double unit = texels_at_unit_density(charts_, instances_);
+        const double budget = static_cast<double>(options_.max_bytes);
+        const double per_texel = options_.bytes_per_texel * mip_sum(options_.masks);
+        const double even = unit > 0.0 ? std::sqrt(budget / (per_texel * unit)) : 1.0;  // without any border or gap
+        density_ = kSmallest * even;
+        LUMEL_TRY(const bool any, try_pages(limit));
+        if (!any) return no_room();
+        if (packed_bytes() > budget) return too_few_bytes();
+        double low = density_, high = 2.0 * even;
+        SizedCharts best_sized = sized_;
+        Packing best_packing = packing_;
+        density_ = kNear * even;
+        for (int step = 0; step < kSteps && high > kNarrow * low; ++step) {
+            LUMEL_TRY(const bool fits, try_pages(limit));
+            const double bytes = packed_bytes();
+            if (fits && bytes <= budget) {
+                low = density_;
+                best_sized = sized_;
+                best_packing = packing_;
+                if (bytes >= kNear * budget) break;
+            } else {
+                high = density_;
+            }
+            const double margin = kMargin * (high - low), aim = 0.5 * (1.0 + kNear) * budget;
+            const double guess = fits ? density_ * std::sqrt(aim / bytes) : 0.5 * (low + high);
+            // Where the guess would only creep along one end of the bracket, its middle.
+            density_ = guess > low + margin && guess < high - margin ? guess : 0.5 * (low + high);
+        }
+        density_ = low;
+        sized_ = std::move(best_sized);
+        packing_ = std::move(best_packing);
         report_clamped();
         return success();
+    }
+
+    // What max_bytes counts.
+    [[nodiscard]] double packed_bytes() const {
+        std::vector<AtlasPage> pages;
+        for (const PackPage& page : packing_.pages) pages.push_back({page.width * cell(), page.height * cell()});
+        return options_.bytes_per_texel * static_cast<double>(texels_with_mips(pages, options_.masks));
+    }
+
+    [[nodiscard]] Error too_few_bytes() const {
+        const auto least = static_cast<std::uint64_t>(std::ceil(packed_bytes()));
+        return {ErrorCode::usage,
+                "the " + std::to_string(instances_.size()) + " charts, each as small as can be, take " +
+                    std::to_string(least) + " bytes, and --max-bytes allows " + std::to_string(options_.max_bytes),
+                scene_.source, "ask for --max-bytes " + std::to_string(least) + " at least"};
     }
 
     // One page of a given size, at the density asked or the highest that fits: from an all but full page down in steps
@@ -315,9 +399,18 @@ private:
 
 }  // namespace
 
+std::uint64_t texels_with_mips(std::span<const AtlasPage> pages, const MaskRule& masks) {
+    std::uint64_t out = 0;
+    for (const AtlasPage& page : pages)
+        for (std::uint32_t mip = 0; mip <= masks.mips; ++mip)
+            out += std::uint64_t{page.at_mip(mip).width} * page.at_mip(mip).height;
+    return out;
+}
+
 Result<Atlas> make_atlas(const Scene& scene, const WorldGeometry& geometry, const ChartSet& charts,
                          const ChartOptions& options, Context& context) {
     if (options.previous) LUMEL_TRY_STATUS(check_record(*options.previous, charts, options));
+    LUMEL_TRY_STATUS(check_byte_budget(options, charts.scene_wide));
     if (charts.scene_wide) return kept_atlas(scene, geometry, charts, options);
     LUMEL_TRY_STATUS(check_masks(options));
     LUMEL_TRY_STATUS(check_page_choice(options));

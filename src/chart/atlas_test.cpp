@@ -243,6 +243,80 @@ TEST(Atlas, DensityIsWhatWasReached) {
     }
 }
 
+// Counted here anew: every texel of every page and mip.
+double bytes_of(const Atlas& atlas, double per_texel) {
+    double texels = 0.0;
+    for (const AtlasPage& page : atlas.pages)
+        for (std::uint32_t mip = 0; mip <= atlas.masks.mips; ++mip)
+            texels += std::floor(std::ldexp(page.width, -static_cast<int>(mip))) *
+                      std::floor(std::ldexp(page.height, -static_cast<int>(mip)));
+    return per_texel * texels;
+}
+
+TEST(Atlas, TakesTheBytesThatAreAllowed) {
+    const Level level = mixed_level();
+    for (const std::uint32_t mips : {0u, 2u})
+        for (const std::uint32_t max_page : {4096u, 128u})
+            for (const double per_texel : {1.0, 8.0}) {
+                SCOPED_TRACE(std::to_string(mips) + " mips, pages of " + std::to_string(max_page));
+                Context context(1);
+                ChartOptions options;
+                options.max_bytes = static_cast<std::uint64_t>(80000 * per_texel);
+                options.bytes_per_texel = per_texel;
+                options.max_page = max_page;
+                options.masks.mips = mips;
+                const Layout l = layout(level, options, context);
+                EXPECT_EQ(shared_cells(level, l, options.masks), 0u);
+                const double share = bytes_of(l.atlas, per_texel) / static_cast<double>(options.max_bytes);
+                EXPECT_LE(share, 1.0);
+                // Pages are whole cells of 4 x 4 under two mips: a row of a page of 300 texels is 1.3 % of it.
+                EXPECT_GE(share, 0.96);
+            }
+}
+
+TEST(Atlas, TooFewBytesNameTheLeast) {
+    const Level level = mixed_level();
+    Context context(1);
+    const auto atlas_of = [&](const ChartOptions& options) {
+        const WorldGeometry geometry = flatten(level.scene, context).value();
+        const ChartSet charts = make_charts(level.scene, geometry, options, context).value();
+        return make_atlas(level.scene, geometry, charts, options, context);
+    };
+    ChartOptions options;
+    options.texel_budget = 8000;  // also what tells which charts are bad
+    options.max_bytes = 10;
+    const Result<Atlas> none = atlas_of(options);
+    ASSERT_FALSE(none.ok());
+    EXPECT_EQ(none.error().code, ErrorCode::usage);
+    const std::string& remedy = none.error().remedy;
+    options.max_bytes = std::stoull(remedy.substr(remedy.find_first_of("0123456789")));
+    const Result<Atlas> least = atlas_of(options);
+    ASSERT_TRUE(least.ok()) << least.error().text();
+    EXPECT_EQ(bytes_of(*least, 1.0), static_cast<double>(options.max_bytes));
+    --options.max_bytes;
+    EXPECT_FALSE(atlas_of(options).ok());
+    options.max_bytes = 80000;
+    options.texels_per_metre = 4.0;
+    EXPECT_EQ(atlas_of(options).error().code, ErrorCode::usage);
+    options.texels_per_metre = 0.0;
+    options.resolution_width = options.resolution_height = 256;
+    EXPECT_EQ(atlas_of(options).error().code, ErrorCode::usage);
+}
+
+TEST(Atlas, BytesGiveTheSameBitsForAnyNumberOfThreads) {
+    const Level level = mixed_level();
+    const auto lay_out = [&](unsigned threads) {
+        Context context(threads);
+        ChartOptions options;
+        options.max_bytes = 50000;
+        return layout(level, options, context).atlas;
+    };
+    const Atlas one = lay_out(1), eight = lay_out(8);
+    EXPECT_EQ(one.density, eight.density);
+    ASSERT_EQ(one.placements.size(), eight.placements.size());
+    for (std::size_t k = 0; k < one.placements.size(); ++k) EXPECT_EQ(one.placements[k].box, eight.placements[k].box);
+}
+
 TEST(Atlas, CancelledIsCancelled) {
     const Level level = mixed_level();
     Context context(1);
