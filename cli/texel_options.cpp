@@ -22,11 +22,12 @@ void TexelOptions::declare(CLI::App& app) {
     app.add_option("--texels-per-metre", values_.texels_per_metre, "Density (0: from the preset's texel budget)")
         ->check(between(0.0, 1e6))
         ->group(group);
-    app.add_option("--max-bytes", values_.max_bytes,
+    app.add_option("--atlas-bytes", values_.atlas_bytes,
                    "Density such that all texels of pages and mips take no more (units: KiB, MiB, GiB; 0: not asked)")
         ->transform(CLI::AsSizeValue(false))
         ->group(group);
-    app.add_option("--bytes-per-texel", values_.bytes_per_texel, "What --max-bytes counts a texel as: 1 is BC6H or BC7")
+    app.add_option("--bytes-per-texel", values_.bytes_per_texel,
+                   "What --atlas-bytes counts a texel as: 1 is BC6H or BC7")
         ->check(between(0.5, 1024.0))
         ->group(group);
     app.add_option("--resolution", resolution_, "WxH of the one page")
@@ -63,7 +64,7 @@ Status TexelOptions::read(BakeOptions& out) const {
     out.preset = preset_ == "preview" ? Preset::preview : preset_ == "medium" ? Preset::medium : Preset::production;
     out.texels_per_metre = values_.texels_per_metre;
     out.max_page = values_.max_page;
-    out.max_bytes = values_.max_bytes;
+    out.atlas_bytes = values_.atlas_bytes;
     out.bytes_per_texel = values_.bytes_per_texel;
     if (pages_ == "cluster")
         out.page_clusters = true;

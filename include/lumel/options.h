@@ -80,8 +80,8 @@ struct BakeOptions {
     std::uint32_t max_page = 4096;                              // largest page edge; 64..16384
     double texels_per_metre = 0.0;                              // 0: from the preset's texel budget
     // The density is solved so that all texels of all pages and of their mips, at so many bytes each, take no more than
-    // max_bytes (0: not asked). 1 is what BC6H and BC7 take, 8 four halves.
-    std::uint64_t max_bytes = 0;
+    // atlas_bytes (0: not asked). 1 is what BC6H and BC7 take, 8 four halves.
+    std::uint64_t atlas_bytes = 0;
     double bytes_per_texel = 1.0;
     // Pages by where objects are, so that what is near each other is on one: as many as max_page asks for, or `pages`.
     bool page_clusters = false;

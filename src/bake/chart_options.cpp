@@ -27,10 +27,10 @@ ChartOptions chart_options(const BakeOptions& options) {
     out.max_page = options.max_page;
     out.texels_per_metre = options.texels_per_metre;
     out.texel_budget = preset_values(options.preset).texel_budget;
-    out.max_bytes = options.max_bytes;
+    out.atlas_bytes = options.atlas_bytes;
     out.bytes_per_texel = options.bytes_per_texel;
     // What is looked at before anything is packed takes the bytes for texels.
-    if (options.max_bytes > 0) out.texel_budget = static_cast<double>(options.max_bytes) / options.bytes_per_texel;
+    if (options.atlas_bytes > 0) out.texel_budget = static_cast<double>(options.atlas_bytes) / options.bytes_per_texel;
     if (options.max_memory_bytes != 0) out.max_mask_bytes = std::min(out.max_mask_bytes, options.max_memory_bytes);
     out.page_clusters = options.page_clusters;
     out.pages = options.pages;

@@ -31,7 +31,7 @@ Status write_mips(const PageOutput& out, const Atlas& atlas, const Lightmap& pag
 ChartOptions options_again(const BakeOptions& options, const Atlas& then, const std::vector<bool>& collapsed) {
     ChartOptions out = chart_options(options);
     out.texels_per_metre = then.density;
-    out.max_bytes = 0;  // it is what the density was solved for
+    out.atlas_bytes = 0;  // it is what the density was solved for
     out.sizes = collapsed_sizes(then, collapsed);
     if (options.max_memory_bytes == 0) return out;
     std::uint32_t longest = 64;

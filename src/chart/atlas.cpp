@@ -75,9 +75,9 @@ Status check_page_choice(const ChartOptions& options) {
 }
 
 Status check_byte_budget(const ChartOptions& options, bool scene_wide) {
-    if (options.max_bytes == 0) return success();
+    if (options.atlas_bytes == 0) return success();
     const auto bad = [](const char* what, const char* remedy) {
-        return Error{ErrorCode::usage, std::string("--max-bytes does not go with ") + what, {}, remedy};
+        return Error{ErrorCode::usage, std::string("--atlas-bytes does not go with ") + what, {}, remedy};
     };
     if (scene_wide)
         return bad("a TEXCOORD_1 that is kept as one atlas of the scene", "take --uv1 mesh or ignore, or --resolution");
@@ -146,7 +146,7 @@ private:
     Status fill_pages() {
         const SizeLimit limit = SizeLimit::of_page(options_.max_page, options_.max_page, options_.masks);
         if (limit.width < 2) return no_room();
-        if (options_.max_bytes > 0) return fill_bytes(limit);
+        if (options_.atlas_bytes > 0) return fill_bytes(limit);
         density_ = options_.texels_per_metre;
         if (!(density_ > 0.0)) {
             // A budget that the smallest charts eat by more than half is too small to be meant.
@@ -171,48 +171,32 @@ private:
         return packing_.complete;
     }
 
-    // The highest density found whose pages, as they are packed, take no more than max_bytes. Bytes do not quite grow
-    // with the density, for pages are of whole rows and the packer has better and worse days: the search ends where
-    // kNear of the budget is used, or the bracket is narrow, or after kSteps.
+    // The highest density found whose pages, as they are packed, take no more than atlas_bytes.
     Status fill_bytes(SizeLimit limit) {
-        constexpr int kSteps = 16;
-        constexpr double kNear = 0.99, kNarrow = 1.002, kMargin = 0.02, kSmallest = 1e-6;
         const double unit = texels_at_unit_density(charts_, instances_);
-        const double budget = static_cast<double>(options_.max_bytes);
+        const double budget = static_cast<double>(options_.atlas_bytes);
         const double per_texel = options_.bytes_per_texel * mip_sum(options_.masks);
         const double even = unit > 0.0 ? std::sqrt(budget / (per_texel * unit)) : 1.0;  // without any border or gap
-        density_ = kSmallest * even;
+        // As small as can be.
+        density_ = 1e-6 * even;
         LUMEL_TRY(const bool any, try_pages(limit));
         if (!any) return no_room();
         if (packed_bytes() > budget) return too_few_bytes();
-        double low = density_, high = 2.0 * even;
-        SizedCharts best_sized = sized_;
-        Packing best_packing = packing_;
-        density_ = kNear * even;
-        for (int step = 0; step < kSteps && high > kNarrow * low; ++step) {
+        const auto bytes_at = [&](double density) -> Result<double> {
+            density_ = density;
             LUMEL_TRY(const bool fits, try_pages(limit));
-            const double bytes = packed_bytes();
-            if (fits && bytes <= budget) {
-                low = density_;
-                best_sized = sized_;
-                best_packing = packing_;
-                if (bytes >= kNear * budget) break;
-            } else {
-                high = density_;
-            }
-            const double margin = kMargin * (high - low), aim = 0.5 * (1.0 + kNear) * budget;
-            const double guess = fits ? density_ * std::sqrt(aim / bytes) : 0.5 * (low + high);
-            // Where the guess would only creep along one end of the bracket, its middle.
-            density_ = guess > low + margin && guess < high - margin ? guess : 0.5 * (low + high);
+            return fits ? packed_bytes() : std::numeric_limits<double>::infinity();
+        };
+        LUMEL_TRY(const double best, densest_within(budget, density_, even, bytes_at));
+        if (best != density_) {
+            density_ = best;
+            LUMEL_TRY_STATUS(try_pages(limit));
         }
-        density_ = low;
-        sized_ = std::move(best_sized);
-        packing_ = std::move(best_packing);
         report_clamped();
         return success();
     }
 
-    // What max_bytes counts.
+    // What atlas_bytes counts.
     [[nodiscard]] double packed_bytes() const {
         std::vector<AtlasPage> pages;
         for (const PackPage& page : packing_.pages) pages.push_back({page.width * cell(), page.height * cell()});
@@ -223,8 +207,8 @@ private:
         const auto least = static_cast<std::uint64_t>(std::ceil(packed_bytes()));
         return {ErrorCode::usage,
                 "the " + std::to_string(instances_.size()) + " charts, each as small as can be, take " +
-                    std::to_string(least) + " bytes, and --max-bytes allows " + std::to_string(options_.max_bytes),
-                scene_.source, "ask for --max-bytes " + std::to_string(least) + " at least"};
+                    std::to_string(least) + " bytes, and --atlas-bytes allows " + std::to_string(options_.atlas_bytes),
+                scene_.source, "ask for --atlas-bytes " + std::to_string(least) + " at least"};
     }
 
     // One page of a given size, at the density asked or the highest that fits: from an all but full page down in steps

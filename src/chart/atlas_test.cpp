@@ -261,13 +261,13 @@ TEST(Atlas, TakesTheBytesThatAreAllowed) {
                 SCOPED_TRACE(std::to_string(mips) + " mips, pages of " + std::to_string(max_page));
                 Context context(1);
                 ChartOptions options;
-                options.max_bytes = static_cast<std::uint64_t>(80000 * per_texel);
+                options.atlas_bytes = static_cast<std::uint64_t>(80000 * per_texel);
                 options.bytes_per_texel = per_texel;
                 options.max_page = max_page;
                 options.masks.mips = mips;
                 const Layout l = layout(level, options, context);
                 EXPECT_EQ(shared_cells(level, l, options.masks), 0u);
-                const double share = bytes_of(l.atlas, per_texel) / static_cast<double>(options.max_bytes);
+                const double share = bytes_of(l.atlas, per_texel) / static_cast<double>(options.atlas_bytes);
                 EXPECT_LE(share, 1.0);
                 // Pages are whole cells of 4 x 4 under two mips: a row of a page of 300 texels is 1.3 % of it.
                 EXPECT_GE(share, 0.96);
@@ -284,18 +284,18 @@ TEST(Atlas, TooFewBytesNameTheLeast) {
     };
     ChartOptions options;
     options.texel_budget = 8000;  // also what tells which charts are bad
-    options.max_bytes = 10;
+    options.atlas_bytes = 10;
     const Result<Atlas> none = atlas_of(options);
     ASSERT_FALSE(none.ok());
     EXPECT_EQ(none.error().code, ErrorCode::usage);
     const std::string& remedy = none.error().remedy;
-    options.max_bytes = std::stoull(remedy.substr(remedy.find_first_of("0123456789")));
+    options.atlas_bytes = std::stoull(remedy.substr(remedy.find_first_of("0123456789")));
     const Result<Atlas> least = atlas_of(options);
     ASSERT_TRUE(least.ok()) << least.error().text();
-    EXPECT_EQ(bytes_of(*least, 1.0), static_cast<double>(options.max_bytes));
-    --options.max_bytes;
+    EXPECT_EQ(bytes_of(*least, 1.0), static_cast<double>(options.atlas_bytes));
+    --options.atlas_bytes;
     EXPECT_FALSE(atlas_of(options).ok());
-    options.max_bytes = 80000;
+    options.atlas_bytes = 80000;
     options.texels_per_metre = 4.0;
     EXPECT_EQ(atlas_of(options).error().code, ErrorCode::usage);
     options.texels_per_metre = 0.0;
@@ -308,7 +308,7 @@ TEST(Atlas, BytesGiveTheSameBitsForAnyNumberOfThreads) {
     const auto lay_out = [&](unsigned threads) {
         Context context(threads);
         ChartOptions options;
-        options.max_bytes = 50000;
+        options.atlas_bytes = 50000;
         return layout(level, options, context).atlas;
     };
     const Atlas one = lay_out(1), eight = lay_out(8);

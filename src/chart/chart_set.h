@@ -111,9 +111,9 @@ struct ChartOptions {
     std::uint32_t max_page = 4096;                              // largest page edge, texels, 64..16384
     double texels_per_metre = 0.0;                              // 0: solved from the budget
     double texel_budget = 250000.0;                             // texels, where no density is asked
-    // Instead of both: all texels of all pages and their mips, at so many bytes each, take no more than max_bytes (0:
+    // Instead of both: all texels of all pages and their mips, at so many bytes each, take no more than atlas_bytes (0:
     // not asked). Not with texels_per_metre, one page of a given resolution, `previous` or a TEXCOORD_1 that is kept.
-    std::uint64_t max_bytes = 0;
+    std::uint64_t atlas_bytes = 0;
     double bytes_per_texel = 1.0;
     // Charts of instances that are near each other share pages: as many as max_page asks for, or `pages` (0: not said).
     bool page_clusters = false;
@@ -145,7 +145,7 @@ Result<ChartSet> make_charts(const Scene& scene, const WorldGeometry& geometry, 
 
 // Places the charts of every lightmap instance. Errors: usage where they cannot fit the asked resolution, where the
 // masks are of a rule that cannot be, or the resolution is no multiple of its cells, and where the options do not allow
-// to keep the previous layout, or where max_bytes hold no layout of these charts (the least that do are named);
+// to keep the previous layout, or where atlas_bytes hold no layout of these charts (the least that do are named);
 // out_of_memory where the masks at this density would take more than
 // ChartOptions::max_mask_bytes: before any is drawn.
 // Diagnostics: "chart-clamped" (nodes with charts larger than a page, and the density that is left to them).

@@ -9,6 +9,7 @@
 
 #include "base/cancelled.h"
 #include "base/parallel.h"
+#include "base/try.h"
 
 namespace lumel {
 namespace {
@@ -262,6 +263,27 @@ Result<double> solve_density(const ChartSet& charts, const std::vector<ChartInst
         density = std::clamp(guess, low + margin, high - margin);
     }
     return density;
+}
+
+Result<double> densest_within(double budget, double least, double even,
+                              const std::function<Result<double>(double density)>& bytes_at) {
+    constexpr int kSteps = 16;
+    constexpr double kNear = 0.99, kNarrow = 1.002, kMargin = 0.02;
+    double low = least, high = 2.0 * even, density = kNear * even;
+    for (int step = 0; step < kSteps && high > kNarrow * low; ++step) {
+        LUMEL_TRY(const double bytes, bytes_at(density));
+        if (bytes <= budget) {
+            low = density;
+            if (bytes >= kNear * budget) break;
+        } else {
+            high = density;
+        }
+        const double margin = kMargin * (high - low), middle = 0.5 * (low + high);
+        const double guess = density * std::sqrt(0.5 * (1.0 + kNear) * budget / bytes);
+        // Where the guess would only creep along one end of the bracket, its middle.
+        density = guess > low + margin && guess < high - margin ? guess : middle;
+    }
+    return low;
 }
 
 }  // namespace lumel

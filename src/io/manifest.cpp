@@ -168,7 +168,7 @@ Json options_json(const ManifestInput& in) {
             {"resolution", {options.resolution_width, options.resolution_height}},
             {"max_page", options.max_page},
             {"texels_per_metre", options.texels_per_metre},
-            {"max_bytes", options.max_bytes},
+            {"atlas_bytes", options.atlas_bytes},
             {"bytes_per_texel", options.bytes_per_texel},
             {"pages", options.pages != 0 ? Json(options.pages) : Json(options.page_clusters ? "cluster" : "auto")},
             {"lookups", lookups_json(in.atlas.masks)},

@@ -57,8 +57,8 @@ for pair in 'view.exr view.png' 'view.png view.pfm'; do
     done
 done
 expect 0 '[codes]' compare view.png view.png
-expect 0 '' render dark.gltf -o black.exr --samples 1 --resolution 16x16
-expect 0 '[black-reference]' compare view.exr black.exr
+{ printf 'PF\n16 16\n-1.0\n' && head -c 3072 /dev/zero; } >black.pfm
+expect 0 '[black-reference]' compare view.exr black.pfm
 "$lumel" compare view.exr view.pfm >out.txt 2>err.txt || complain "compare view.exr view.pfm: exit code $?"
 [ -s err.txt ] && complain "compare view.exr view.pfm: says $(cat err.txt)"
 
