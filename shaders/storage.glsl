@@ -21,7 +21,7 @@ vec3 lumel_decode_logluv(vec4 x, float scale) {
     float y = exp2((255.0 * x.z + x.w - 127.0) * 0.5);
     float s = y / max(x.y, 1.0 / 255.0);
     vec3 v = vec3(x.x * s, y, s);
-    vec3 rgb = vec3(dot(vec3(6.0014, -1.3320, 0.3008), v), dot(vec3(-2.7008, 3.1029, -1.0882), v),
-                    dot(vec3(-1.7996, -5.7721, 5.6268), v));
-    return rgb * scale;
+    vec3 rgb = vec3(dot(vec3(6.0013654, -1.3320037, 0.3007831), v), dot(vec3(-2.7007574, 3.1029433, -1.0881942), v),
+                    dot(vec3(-1.7995519, -5.7720911, 5.6268162), v));
+    return max(rgb, vec3(0.0, 0.0, 0.0)) * scale;
 }

@@ -22,7 +22,7 @@ fn lumel_decode_logluv(x: vec4f, scale: f32) -> vec3f {
     var y: f32 = exp2((255.0 * x.z + x.w - 127.0) * 0.5);
     var s: f32 = y / max(x.y, 1.0 / 255.0);
     var v: vec3f = vec3f(x.x * s, y, s);
-    var rgb: vec3f = vec3f(dot(vec3f(6.0014, -1.3320, 0.3008), v), dot(vec3f(-2.7008, 3.1029, -1.0882), v),
-                    dot(vec3f(-1.7996, -5.7721, 5.6268), v));
-    return rgb * scale;
+    var rgb: vec3f = vec3f(dot(vec3f(6.0013654, -1.3320037, 0.3007831), v), dot(vec3f(-2.7007574, 3.1029433, -1.0881942), v),
+                    dot(vec3f(-1.7995519, -5.7720911, 5.6268162), v));
+    return max(rgb, vec3f(0.0, 0.0, 0.0)) * scale;
 }

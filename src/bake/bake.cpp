@@ -102,7 +102,8 @@ Result<Atlas> make_atlas_within_memory(const Scene& scene, const WorldGeometry& 
     std::string remedy = is_kept
                              ? "raise --max-memory, or leave out --atlas: pages of a layout that is kept stay as large"
                          : one_page ? "raise --max-memory, or lower --resolution: a single page cannot be split"
-                                    : "raise --max-memory, or lower --texels-per-metre or --threads";
+                         : options.atlas_bytes > 0 ? "raise --max-memory, or lower --atlas-bytes or --threads"
+                                                   : "raise --max-memory, or lower --texels-per-metre or --threads";
     if (cell_samples > 0) remedy += "; --integrator paths needs less";
     return Error{ErrorCode::out_of_memory,
                  "this bake is predicted to need about " + megabytes(report.predicted_memory_bytes) +

@@ -29,8 +29,6 @@ ChartOptions chart_options(const BakeOptions& options) {
     out.texel_budget = preset_values(options.preset).texel_budget;
     out.atlas_bytes = options.atlas_bytes;
     out.bytes_per_texel = options.bytes_per_texel;
-    // What is looked at before anything is packed takes the bytes for texels.
-    if (options.atlas_bytes > 0) out.texel_budget = static_cast<double>(options.atlas_bytes) / options.bytes_per_texel;
     if (options.max_memory_bytes != 0) out.max_mask_bytes = std::min(out.max_mask_bytes, options.max_memory_bytes);
     out.page_clusters = options.page_clusters;
     out.pages = options.pages;
@@ -39,6 +37,9 @@ ChartOptions chart_options(const BakeOptions& options) {
     out.masks.filter = options.filter.value_or(out.masks.filter);
     out.masks.mips = options.mips.value_or(out.masks.mips);
     out.masks.block = options.block.value_or(out.masks.block);
+    // What is looked at before anything is packed takes the bytes for texels.
+    if (options.atlas_bytes > 0)
+        out.texel_budget = static_cast<double>(options.atlas_bytes) / (options.bytes_per_texel * mip_sum(out.masks));
     return out;
 }
 

@@ -76,22 +76,18 @@ Status check_page_choice(const ChartOptions& options) {
 
 Status check_byte_budget(const ChartOptions& options, bool scene_wide) {
     if (options.atlas_bytes == 0) return success();
+    if (!(options.bytes_per_texel > 0.0))
+        return Error{ErrorCode::usage, "--bytes-per-texel is not above 0", {}, "1 is what BC6H and BC7 take"};
     const auto bad = [](const char* what, const char* remedy) {
         return Error{ErrorCode::usage, std::string("--atlas-bytes does not go with ") + what, {}, remedy};
     };
     if (scene_wide)
-        return bad("a TEXCOORD_1 that is kept as one atlas of the scene", "take --uv1 mesh or ignore, or --resolution");
+        return bad("a TEXCOORD_1 that is kept as one atlas of the scene",
+                   "take --uv1 mesh or ignore, or --resolution instead of --atlas-bytes");
     if (options.texels_per_metre > 0.0) return bad("--texels-per-metre: it solves the density", "leave one out");
     if (options.resolution_width != 0) return bad("--resolution, which is of one page", "leave one out");
     if (options.previous) return bad("--atlas, whose density stays", "leave one out");
     return success();
-}
-
-// Texels of a page and its mips over those of the page.
-double mip_sum(const MaskRule& masks) {
-    double sum = 1.0;
-    for (std::uint32_t mip = 1; mip <= masks.mips; ++mip) sum += std::ldexp(1.0, -2 * static_cast<int>(mip));
-    return sum;
 }
 
 // The middle of the box around each instance.
@@ -182,12 +178,13 @@ private:
         LUMEL_TRY(const bool any, try_pages(limit));
         if (!any) return no_room();
         if (packed_bytes() > budget) return too_few_bytes();
-        const auto bytes_at = [&](double density) -> Result<double> {
+        const auto pack_at = [&](double density) -> Result<PackedSize> {
             density_ = density;
             LUMEL_TRY(const bool fits, try_pages(limit));
-            return fits ? packed_bytes() : std::numeric_limits<double>::infinity();
+            return PackedSize{fits ? packed_bytes() : std::numeric_limits<double>::infinity(),
+                              sized_.clamped.size() == instances_.size()};
         };
-        LUMEL_TRY(const double best, densest_within(budget, density_, even, bytes_at));
+        LUMEL_TRY(const double best, densest_within(budget, density_, even, pack_at));
         if (best != density_) {
             density_ = best;
             LUMEL_TRY_STATUS(try_pages(limit));
@@ -208,7 +205,9 @@ private:
         return {ErrorCode::usage,
                 "the " + std::to_string(instances_.size()) + " charts, each as small as can be, take " +
                     std::to_string(least) + " bytes, and --atlas-bytes allows " + std::to_string(options_.atlas_bytes),
-                scene_.source, "ask for --atlas-bytes " + std::to_string(least) + " at least"};
+                scene_.source,
+                "ask for --atlas-bytes " + std::to_string(least) + " at least" +
+                    (options_.masks.mips > 0 ? ", or for fewer --mips" : "")};
     }
 
     // One page of a given size, at the density asked or the highest that fits: from an all but full page down in steps
@@ -305,6 +304,7 @@ private:
                 options_.previous                 ? "leave out --atlas: there is no room beside the charts that stay"
                 : options_.pages > 0              ? "raise --pages or --max-page, or lower the density"
                 : options_.texels_per_metre > 0.0 ? "lower --texels-per-metre, or leave it out to have it solved"
+                : options_.atlas_bytes > 0        ? "raise --max-page or --pages, or ask for fewer --mips"
                                                   : "ask for a larger --resolution, or none to have several pages"};
     }
 
@@ -321,11 +321,14 @@ private:
         const auto megabytes = [](std::uint64_t b) { return std::to_string((b + (1u << 20) - 1) >> 20) + " MB"; };
         char density[32];
         std::snprintf(density, sizeof density, "%.4g", density_);
-        return {
-            ErrorCode::out_of_memory,
-            "the masks of " + std::to_string(instances_.size()) + " charts at " + density + " texels per metre take " +
-                megabytes(bytes) + ", and " + megabytes(options_.max_mask_bytes) + " are allowed",
-            scene_.source, options_.previous ? "leave out --atlas, whose density that is" : "lower --texels-per-metre"};
+        return {ErrorCode::out_of_memory,
+                "the masks of " + std::to_string(instances_.size()) + " charts at " + density +
+                    " texels per metre take " + megabytes(bytes) + ", and " + megabytes(options_.max_mask_bytes) +
+                    " are allowed",
+                scene_.source,
+                options_.previous          ? "leave out --atlas, whose density that is"
+                : options_.atlas_bytes > 0 ? "lower --atlas-bytes"
+                                           : "lower --texels-per-metre"};
     }
 
     [[nodiscard]] std::vector<PackItem> items() const {
@@ -382,6 +385,12 @@ private:
 };
 
 }  // namespace
+
+double mip_sum(const MaskRule& masks) {
+    double sum = 1.0;
+    for (std::uint32_t mip = 1; mip <= masks.mips; ++mip) sum += std::ldexp(1.0, -2 * static_cast<int>(mip));
+    return sum;
+}
 
 std::uint64_t texels_with_mips(std::span<const AtlasPage> pages, const MaskRule& masks) {
     std::uint64_t out = 0;

@@ -98,6 +98,9 @@ struct Atlas {
                                               std::uint32_t mesh_triangle) const;
 };
 
+// Texels of a page and its mips over those of the page.
+double mip_sum(const MaskRule& masks);
+
 // Of all pages and their mips, those that no chart lies on among them.
 std::uint64_t texels_with_mips(std::span<const AtlasPage> pages, const MaskRule& masks);
 

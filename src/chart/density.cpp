@@ -266,20 +266,20 @@ Result<double> solve_density(const ChartSet& charts, const std::vector<ChartInst
 }
 
 Result<double> densest_within(double budget, double least, double even,
-                              const std::function<Result<double>(double density)>& bytes_at) {
+                              const std::function<Result<PackedSize>(double density)>& pack_at) {
     constexpr int kSteps = 16;
     constexpr double kNear = 0.99, kNarrow = 1.002, kMargin = 0.02;
     double low = least, high = 2.0 * even, density = kNear * even;
     for (int step = 0; step < kSteps && high > kNarrow * low; ++step) {
-        LUMEL_TRY(const double bytes, bytes_at(density));
-        if (bytes <= budget) {
+        LUMEL_TRY(const PackedSize packed, pack_at(density));
+        if (packed.bytes <= budget) {
             low = density;
-            if (bytes >= kNear * budget) break;
+            if (packed.all_largest || packed.bytes >= kNear * budget) break;
         } else {
             high = density;
         }
         const double margin = kMargin * (high - low), middle = 0.5 * (low + high);
-        const double guess = density * std::sqrt(0.5 * (1.0 + kNear) * budget / bytes);
+        const double guess = density * std::sqrt(0.5 * (1.0 + kNear) * budget / packed.bytes);
         // Where the guess would only creep along one end of the bracket, its middle.
         density = guess > low + margin && guess < high - margin ? guess : middle;
     }

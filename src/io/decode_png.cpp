@@ -101,12 +101,12 @@ Result<CodedImage> decode_png(std::span<const std::byte> bytes, std::uint32_t ma
     // A size that is too large shall be named even where the rest is damaged: the header should be the first chunk.
     if (bytes.size() >= kSizeAt + 8)
         LUMEL_TRY_STATUS(check_image_size(big_endian(bytes.subspan<kSizeAt, 4>()),
-                                          big_endian(bytes.subspan<kSizeAt + 4, 4>()), 4, max_edge, bytes.size(),
-                                          where));
+                                          big_endian(bytes.subspan<kSizeAt + 4, 4>()), 4, max_edge, bytes.size(), where,
+                                          true));
     PngReader reader(bytes);
     if (!reader.read_header()) return undecodable(reader, where);
     // Where another chunk came first, that was not the size.
-    LUMEL_TRY_STATUS(check_image_size(reader.width(), reader.height(), 4, max_edge, bytes.size(), where));
+    LUMEL_TRY_STATUS(check_image_size(reader.width(), reader.height(), 4, max_edge, bytes.size(), where, true));
     if (!reader.start()) return undecodable(reader, where);
     CodedImage image{reader.width(), reader.height(), reader.channels(), reader.bits(), {}};
     const std::size_t row_bytes = reader.row_bytes();

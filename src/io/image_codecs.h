@@ -21,10 +21,10 @@ inline constexpr std::uint32_t kMaxTextureEdge = 8192;
 enum class ImageFormat : std::uint8_t { unknown, png, jpeg, hdr, exr, pfm, pgm };
 ImageFormat image_format(std::span<const std::byte> bytes);
 
-// Width and height positive and at most max_edge; values (pixels times channels) not beyond 64 M plus 1032 for each
-// byte of the file, which is what Deflate makes of a single colour: a hostile header asks for far more.
+// Width and height positive and at most max_edge; values (pixels times channels) not beyond 64 M plus 128 for each byte
+// of the file, or where it is `deflated` up to 400 M at 4128 for each: a hostile header asks for far more.
 Status check_image_size(std::uint64_t width, std::uint64_t height, std::uint64_t channels, std::uint32_t max_edge,
-                        std::size_t file_bytes, const std::string& where);
+                        std::size_t file_bytes, const std::string& where, bool deflated = false);
 
 // An image of 8 or 16 bits as its file stores it, not linearised: rows from the top; 1 channel is grey, 2 are grey and
 // alpha, 3 RGB, 4 RGBA. Codes of 16 bits are in this machine's byte order.

@@ -48,7 +48,7 @@ ImageFormat image_format(std::span<const std::byte> bytes) {
 }
 
 Status check_image_size(std::uint64_t width, std::uint64_t height, std::uint64_t channels, std::uint32_t max_edge,
-                        std::size_t file_bytes, const std::string& where) {
+                        std::size_t file_bytes, const std::string& where, bool deflated) {
     const std::string size = std::to_string(width) + " x " + std::to_string(height) + " pixels";
     if (width == 0 || height == 0) return Error{ErrorCode::invalid_input, "has no pixels", where, "save it again"};
     if (width > max_edge || height > max_edge)
@@ -56,8 +56,10 @@ Status check_image_size(std::uint64_t width, std::uint64_t height, std::uint64_t
             ErrorCode::unsupported,
             "has " + size + "; at most " + std::to_string(max_edge) + " x " + std::to_string(max_edge) + " are read",
             where, "make it smaller"};
-    // Deflate makes of a single colour at most 1032 times less.
-    if (width * height * channels > (std::uint64_t{64} << 20) + 1032 * std::uint64_t{file_bytes})
+    // Deflate makes of a single colour 1032 times less; grey counts as four channels.
+    const std::uint64_t honest =
+        deflated ? std::min<std::uint64_t>(4 * 1032 * std::uint64_t{file_bytes}, 400000000) : 0;
+    if (width * height * channels > std::max(honest, (std::uint64_t{64} << 20) + 128 * std::uint64_t{file_bytes}))
         return Error{
             ErrorCode::unsupported,
             "says it has " + size + ", more than are read from a file of " + std::to_string(file_bytes) + " bytes",

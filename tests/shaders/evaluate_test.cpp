@@ -6,6 +6,7 @@
 #include "encode/specular.h"
 #include "shaders/case_inputs.h"
 #include "shaders/library.h"
+#include "texture/light_codes.h"
 
 namespace lumel {
 namespace {
@@ -65,6 +66,7 @@ TEST(ShaderDecode, EqualsTheLibrary) {
                 const Vec3 ours = to_vec(glsl::test_decode(which, to_sh(numbers), to_glsl(n)));
                 const Vec3 theirs = encoding.decode(numbers, n);
                 const double error = static_cast<double>(largest(ours - theirs) / std::max(scale, largest(theirs)));
+                ASSERT_TRUE(is_finite(ours)) << name;
                 worst = std::max(worst, error);
             }
         }
@@ -87,9 +89,32 @@ TEST(ShaderDecode, WorldFrameSaysTheSame) {
             const Vec3 ours = to_vec(encoding == &kL1Hhd ? glsl::lumel_l1_hhd(a.l0, a.l1, a.l2, a.l3, n_v, n)
                                                          : glsl::lumel_l1_mono(a.l0, a.l1, n_v, n));
             const Vec3 theirs = encoding->decode(tangent, n_ts);
+            ASSERT_TRUE(is_finite(ours)) << encoding->name;
             // Rotations there and back round a few times.
             EXPECT_LT(largest(ours - theirs), 2e-5f * (1e-6f + largest(theirs) + world[0])) << encoding->name;
         }
+    }
+}
+
+// Codes as their bytes over 255, saturated colours among them.
+TEST(ShaderStorage, IsTheCodersOwn) {
+    const auto sample = [](PixelBytes code) {
+        const auto at = [&](std::size_t i) { return static_cast<float>(code[i]) / 255.0f; };
+        return glsl::vec4(at(0), at(1), at(2), at(3));
+    };
+    const auto expect_equal = [](const char* name, glsl::vec3 ours, Vec3 theirs) {
+        ASSERT_TRUE(is_finite(to_vec(ours))) << name;
+        EXPECT_LT(largest(to_vec(ours) - theirs), 1e-5f * largest(theirs)) << name;
+    };
+    test::Random uniform;
+    for (int i = 0; i < 3000; ++i) {
+        Vec3 light = uniform.up();
+        light = max(light, light * -1.0f);
+        if (i % 3 == 0) light[static_cast<std::size_t>(i / 3 % 3)] = 0.0f;
+        const PixelBytes m = encode_rgbm(light), d = encode_rgbd(light), luv = encode_logluv(light * 8.0f);
+        expect_equal("rgbm", glsl::lumel_decode_rgbm(sample(m), 2.0f), decode_rgbm(m) * 2.0f);
+        expect_equal("rgbd", glsl::lumel_decode_rgbd(sample(d), 2.0f), decode_rgbd(d) * 2.0f);
+        expect_equal("logluv", glsl::lumel_decode_logluv(sample(luv), 2.0f), decode_logluv(luv) * 2.0f);
     }
 }
 
