@@ -3,8 +3,8 @@
 // the coefficients (world), results are in that frame, too. Needs: spherical_harmonics.
 // Based on: Roughton 2024, "Hemispherical Lighting Insights"; where its slides misprint, numerical integration decided.
 
-// Cosine of the half angle of the cone, about a bent direction, a unit vector, at cosine z from n_v, whose cosine-weighted visibility
-// (1 - ambient occlusion) is v. 0 is the hemisphere.
+// Cosine of the half angle of the cone whose cosine-weighted visibility (1 - ambient occlusion) is v, about a bent
+// direction, a unit vector, at cosine z from n_v. 0 is the hemisphere.
 fn lumel_cone_cosine(v: f32, z: f32) -> f32 {
     if (v >= z) {
         return 0.0;

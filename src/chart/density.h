@@ -77,14 +77,16 @@ inline double least_texels(const std::vector<ChartInstance>& instances, BudgetOf
 // World area over all chart instances, with the rates applied: texels at one texel per metre.
 double texels_at_unit_density(const ChartSet& charts, const std::vector<ChartInstance>& instances);
 
+// What charts of one density take.
+struct PackedSize {
+    double bytes = 0.0;        // infinite: they do not fit at all
+    bool all_largest = false;  // every chart is as large as a page allows
+};
+
 // The highest density found at which `pack_at` gives no more bytes than `budget`; `least` is known to. Bytes
 // do not quite grow with the density, for pages are of whole rows and the packer has better and worse days: the search
 // ends where 99 % of the budget is used, where nothing grows any more, where its bracket is narrow, or after 16
 // packings. `even`: the density at which charts without border or gap would take the budget. Errors: of `pack_at`.
-struct PackedSize {
-    double bytes = 0.0;        // infinite: the charts do not fit at all
-    bool all_largest = false;  // every chart is as large as a page allows
-};
 Result<double> densest_within(double budget, double least, double even,
                               const std::function<Result<PackedSize>(double density)>& pack_at);
 

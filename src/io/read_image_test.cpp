@@ -44,6 +44,17 @@ TEST(ReadImage, TellsCodesFromRadiance) {
     EXPECT_FALSE(is_eight_bit_image(folder / "gone").ok());
 }
 
+// 195,759 bytes is what Deflate makes of 8192 x 8192 pixels of one colour.
+TEST(CheckImageSize, OnlyDeflateMakesAThousandTimesLess) {
+    const auto ok = [](std::uint64_t edge, std::size_t bytes, bool deflated) {
+        return check_image_size(edge, edge, 4, kMaxImageEdge, bytes, "a", deflated).ok();
+    };
+    EXPECT_TRUE(ok(8192, 195759, true));
+    EXPECT_FALSE(ok(8192, 195759, false));
+    EXPECT_FALSE(ok(8192, 20, true));
+    EXPECT_FALSE(ok(16384, 782805, true)) << "4 GB as floats";
+}
+
 TEST(DecodeHdr, ReadsFlatPixels) {
     const auto image = decode(hdr("-Y 2 +X 1", kOne + std::string("\x01\x02\x03\x00", 4)));
     ASSERT_TRUE(image.ok()) << image.error().text();
