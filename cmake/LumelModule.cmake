@@ -1,9 +1,10 @@
-# lumel_module(name [LIBS third-party...] [HEADER_LIBS third-party...] [TEST_LIBS ...]): every .cpp of src/<name> but
-# *_test.cpp becomes the object library lumel_<name>; each *_test.cpp joins the test program test_<name>, and each
-# *_long_test.cpp test_<name>_long, which runs with the label `long`. LIBS are linked by whoever links lumel; HEADER_LIBS
-# have nothing to link. Who may include whom is in src/LAYERS, checked by tests/layers.
+# lumel_module(name [SEPARATE] [SEPARATE_TESTS] [LIBS third-party...] [HEADER_LIBS third-party...] [TEST_LIBS ...]): every
+# .cpp of src/<name> but *_test.cpp becomes the object library lumel_<name>; each *_test.cpp joins the test program
+# test_<name>, and each *_long_test.cpp test_<name>_long, which runs with the label `long`. LIBS are linked by whoever links
+# lumel; HEADER_LIBS have nothing to link. Who may include whom is in src/LAYERS, checked by tests/layers. SEPARATE and
+# SEPARATE_TESTS: files that use one name for several things in their unnamed namespaces, which LUMEL_UNITY leaves alone.
 function(lumel_module name)
-  cmake_parse_arguments(arg "" "" "LIBS;HEADER_LIBS;TEST_LIBS" ${ARGN})
+  cmake_parse_arguments(arg "SEPARATE;SEPARATE_TESTS" "" "LIBS;HEADER_LIBS;TEST_LIBS" ${ARGN})
   set(dir ${PROJECT_SOURCE_DIR}/src/${name})
   file(GLOB sources CONFIGURE_DEPENDS ${dir}/*.cpp)
   file(GLOB headers CONFIGURE_DEPENDS ${dir}/*.h)
@@ -16,6 +17,9 @@ function(lumel_module name)
   if(sources)
     add_library(lumel_${name} OBJECT ${sources} ${headers})
     target_link_libraries(lumel_${name} PRIVATE lumel_options ${arg_LIBS} ${arg_HEADER_LIBS})
+    if(NOT arg_SEPARATE)
+      lumel_compile_together(lumel_${name})
+    endif()
     if(nlohmann_json::nlohmann_json IN_LIST arg_HEADER_LIBS)
       lumel_use_precompiled(lumel_${name} lumel_json_headers)
     elseif(Eigen3::Eigen IN_LIST arg_HEADER_LIBS)
@@ -31,7 +35,18 @@ function(lumel_module name)
   endif()
   set(libs ${arg_LIBS} ${arg_HEADER_LIBS} ${arg_TEST_LIBS})
   lumel_test_program(test_${name} quick "${tests}" "${libs}")
+  if(NOT arg_SEPARATE_TESTS)
+    lumel_compile_together(test_${name})
+  endif()
   lumel_test_program(test_${name}_long long "${long_tests}" "${libs}")
+endfunction()
+
+# LUMEL_UNITY: sixteen files at a time, which two cores share out evenly. Never in the build that users make, which must
+# see every include that a file lacks.
+function(lumel_compile_together target)
+  if(LUMEL_UNITY AND TARGET ${target})
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 16)
+  endif()
 endfunction()
 
 function(lumel_test_program program label sources libs)

@@ -10,12 +10,11 @@
 
 #include "chart/align.h"
 #include "chart/arap.h"
+#include "chart/eigen_vectors.h"
 #include "chart/lscm.h"
 
 namespace lumel {
 namespace {
-
-Eigen::Vector3d to_double(Vec3 v) { return {v.x, v.y, v.z}; }
 
 // The grid of float coordinates at the chart's far end, with a few bits to spare.
 double uv_rounding(const std::vector<UvTriangle>& uv) {

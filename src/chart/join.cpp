@@ -10,11 +10,10 @@
 #include <utility>
 
 #include "chart/arap.h"
+#include "chart/eigen_vectors.h"
 
 namespace lumel {
 namespace {
-
-Eigen::Vector2d to_double(Vec2 v) { return {v.x, v.y}; }
 
 // x -> R x + offset.
 struct RigidMotion {

@@ -1,5 +1,7 @@
 #include "chart/lscm.h"
 
+#include "chart/eigen_vectors.h"
+
 #include <Eigen/Geometry>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
@@ -9,8 +11,6 @@ namespace lumel {
 namespace {
 
 using Triplet = Eigen::Triplet<double, int>;
-
-double cross2(Eigen::Vector2d a, Eigen::Vector2d b) { return a.x() * b.y() - a.y() * b.x(); }
 
 // Collects the quadratic form over the unknowns, pinned ones moved to the right-hand side.
 class Assembly {

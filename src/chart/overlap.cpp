@@ -8,7 +8,7 @@
 namespace lumel {
 namespace {
 
-struct Box {
+struct UvBox {
     float min_x = std::numeric_limits<float>::infinity(), min_y = min_x, max_x = -min_x, max_y = -min_x;
 
     void add(const UvTriangle& t) {
@@ -17,7 +17,7 @@ struct Box {
             min_y = std::min(min_y, p.y), max_y = std::max(max_y, p.y);
         }
     }
-    [[nodiscard]] bool meets(const Box& o) const {
+    [[nodiscard]] bool meets(const UvBox& o) const {
         return min_x <= o.max_x && o.min_x <= max_x && min_y <= o.max_y && o.min_y <= max_y;
     }
 };
@@ -68,7 +68,7 @@ public:
     template <class Visit>
     bool query(std::uint32_t i, const Visit& visit) const {
         if (nodes_.empty()) return true;
-        Box box;
+        UvBox box;
         box.add(triangles_[i]);
         std::uint32_t stack[64], top = 0;
         stack[top++] = 0;
@@ -92,7 +92,7 @@ private:
     static constexpr std::uint32_t kLeafSize = 4;
 
     struct Node {
-        Box box;
+        UvBox box;
         std::uint32_t first, last;
         std::uint32_t right = 0;  // inner nodes: the second child; the first one follows its parent
     };
@@ -103,7 +103,7 @@ private:
         nodes_.push_back({{}, first, last});
         for (std::uint32_t k = first; k < last; ++k) nodes_[self].box.add(triangles_[order_[k]]);
         if (last - first <= kLeafSize) return;
-        const Box box = nodes_[self].box;
+        const UvBox box = nodes_[self].box;
         const bool by_x = box.max_x - box.min_x >= box.max_y - box.min_y;
         const auto centre = [&](std::uint32_t i) {
             const UvTriangle& t = triangles_[i];

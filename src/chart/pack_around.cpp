@@ -29,10 +29,10 @@ struct Step {
     Which which;
 };
 
-class Packer {
+class AroundPacker {
 public:
-    Packer(std::span<const ChartMask> masks, std::span<const PackItem> items, std::span<const PackSpot> kept,
-           std::span<const PackPage> pages, Context& context)
+    AroundPacker(std::span<const ChartMask> masks, std::span<const PackItem> items, std::span<const PackSpot> kept,
+                 std::span<const PackPage> pages, Context& context)
         : masks_(masks), items_(items), context_(context), fixed_(pages.size()) {
         result_.spots.assign(kept.begin(), kept.end());
         result_.pages.assign(pages.begin(), pages.end());
@@ -253,7 +253,7 @@ std::size_t drop_conflicts(std::span<const ChartMask> masks, std::span<const Pac
 Packing pack_around(std::span<const ChartMask> masks, std::span<const PackItem> items, std::span<const PackSpot> kept,
                     std::span<const PackPage> pages, std::uint32_t max_page, Context& context) {
     LUMEL_CHECK(kept.size() == items.size(), kept.size(), items.size());
-    return Packer(masks, items, kept, pages, context).run(max_page);
+    return AroundPacker(masks, items, kept, pages, context).run(max_page);
 }
 
 }  // namespace lumel

@@ -1,5 +1,7 @@
 #include "chart/parameterize.h"
 
+#include "chart/eigen_vectors.h"
+
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -8,8 +10,6 @@
 
 namespace lumel {
 namespace {
-
-Eigen::Vector3d to_double(Vec3 v) { return {v.x, v.y, v.z}; }
 
 Eigen::Vector3d centroid(const Mesh& mesh, std::uint32_t t) {
     const Triangle& v = mesh.triangles[t];

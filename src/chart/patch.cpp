@@ -4,14 +4,10 @@
 #include <algorithm>
 
 #include "base/union_find.h"
+#include "chart/eigen_vectors.h"
 
 namespace lumel {
-namespace {
-
-Eigen::Vector3d to_double(Vec3 v) { return {v.x, v.y, v.z}; }
-double cross2(Eigen::Vector2d a, Eigen::Vector2d b) { return a.x() * b.y() - a.y() * b.x(); }
-
-}  // namespace
+namespace {}  // namespace
 
 std::uint32_t index_in(const std::vector<std::uint32_t>& sorted, std::uint32_t triangle) {
     const auto it = std::lower_bound(sorted.begin(), sorted.end(), triangle);

@@ -10,12 +10,11 @@
 
 #include "base/union_find.h"
 #include "chart/crease.h"
+#include "chart/eigen_vectors.h"
 #include "chart/normal_cone.h"
 
 namespace lumel {
 namespace {
-
-Eigen::Vector3d to_double(Vec3 v) { return {v.x, v.y, v.z}; }
 
 // ---- Flat regions ---------------------------------------------------------------------------------------------------
 

@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "base/union_find.h"
+#include "chart/eigen_vectors.h"
 #include "chart/patch.h"
 
 namespace lumel {
@@ -18,8 +19,6 @@ constexpr double kPlanarCos = 0.9994;        // 2 degrees
 constexpr double kSamePlaneCos = 0.99998;    // 0.36 degrees
 constexpr double kNearShare = 1e-4;          // of the shorter edge: how near two that touch are
 constexpr double kAntiparallelCos = 0.9999;  // 0.8 degrees: the ends decide how near edges are
-
-Eigen::Vector3d to_double(Vec3 v) { return {v.x, v.y, v.z}; }
 
 struct BorderEdge {
     std::uint32_t edge;

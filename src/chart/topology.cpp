@@ -1,5 +1,7 @@
 #include "chart/topology.h"
 
+#include "chart/eigen_vectors.h"
+
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -8,8 +10,6 @@
 
 namespace lumel {
 namespace {
-
-Eigen::Vector3d to_double(Vec3 v) { return {v.x, v.y, v.z}; }
 
 // Compared as numbers: -0 and 0 are one position.
 std::tuple<float, float, float> position_key(Vec3 p) { return {p.x, p.y, p.z}; }

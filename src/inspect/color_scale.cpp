@@ -11,7 +11,7 @@ namespace lumel {
 namespace {
 
 constexpr float kOctaves = 4.0f;          // of ColorRule::log_heat
-constexpr double kUsual = 0.99;           // share of the numbers that a scale holds: a few outliers would flatten it
+constexpr double kUsualShare = 0.99;      // share of the numbers that a scale holds: a few outliers would flatten it
 constexpr float kNearlyWhite = 1.5f;      // exposed: the tone curve is at 0.95 there
 constexpr float kSmallestScale = 1e-30f;  // of scales of zeros
 
@@ -61,7 +61,9 @@ ColorScale::ColorScale(const TexelLayer& layer, std::span<const LayerPage> pages
         case ColorRule::identity:
         case ColorRule::share:
         case ColorRule::reflectance: break;
-        case ColorRule::heat: high_ = std::max(quantile(all_channels(pages, false), kUsual), kSmallestScale); break;
+        case ColorRule::heat:
+            high_ = std::max(quantile(all_channels(pages, false), kUsualShare), kSmallestScale);
+            break;
         case ColorRule::log_heat: {
             std::vector<float> values = all_channels(pages, false);
             std::erase_if(values, [](float v) { return !(v > 0.0f); });  // which have no logarithm
@@ -75,7 +77,7 @@ ColorScale::ColorScale(const TexelLayer& layer, std::span<const LayerPage> pages
             high_ = kNearlyWhite / exposure_;
             break;
         case ColorRule::around_zero:
-            high_ = std::max(quantile(all_channels(pages, true), kUsual), kSmallestScale);
+            high_ = std::max(quantile(all_channels(pages, true), kUsualShare), kSmallestScale);
             low_ = -high_;
             break;
         case ColorRule::direction: low_ = -1.0f; break;

@@ -7,11 +7,11 @@
 #include "base/try.h"
 #include "io/image_io.h"
 #include "io/json_read.h"
+#include "io/page_files.h"
 
 namespace lumel {
 namespace {
 
-constexpr std::uint64_t kLargestPage = 16384;
 constexpr const char* kGiveAManifest = "give the manifest.json of a bake, or the atlas.json of lumel atlas";
 constexpr std::size_t kIdDigits = 16;
 

@@ -13,6 +13,7 @@
 #include "image/colormap.h"
 #include "io/baked.h"
 #include "io/image_io.h"
+#include "io/json_write.h"
 #include "io/layout_json.h"
 #include "io/page_files.h"
 
@@ -81,7 +82,6 @@ Status write_picture(const fs::path& path, std::size_t picture, const Drawing& d
 }
 
 // JSON has no infinity.
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json mips_json(const std::vector<MipFigures>& mips) {
     Json out = Json::array();
@@ -110,7 +110,7 @@ Json statistics_json(const AtlasStatistics& s, const Atlas& atlas) {
             {"mean_density", s.mean_density},
             {"texels_per_metre", atlas.texels_per_metre},
             {"least_texels_per_metre", atlas.least_texels_per_metre},
-            {"stretch", number(s.stretch)}};
+            {"stretch", finite_or_null(s.stretch)}};
 }
 
 }  // namespace

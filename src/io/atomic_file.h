@@ -42,6 +42,9 @@ void remove_temporaries(const std::filesystem::path& path);
 
 // An io error with the system's own words and, for the common causes, what to do about it.
 Error system_error(const char* doing, const std::filesystem::path& path, int error_number);
+inline Error system_error(const char* doing, const std::filesystem::path& path, const std::error_code& error) {
+    return system_error(doing, path, error.value());
+}
 
 // Whether such an error says that there was no room left (on the disk, or in the user's share of it).
 bool is_disk_full(const Error& error);

@@ -15,12 +15,11 @@ namespace lumel {
 namespace {
 
 constexpr const char* kExtension = kLightmapExtension;
-constexpr std::uint64_t kMaxSceneFile = std::uint64_t{4} << 30;
-constexpr std::uint64_t kLargestPage = 16384;
+constexpr std::uint64_t kMaxLitSceneFile = std::uint64_t{4} << 30;
 constexpr const char* kOtherScene = "give the scene that was baked, with the same sidecar";
 
 Result<GltfDocumentPtr> read_lit_document(const std::filesystem::path& path) {
-    LUMEL_TRY(std::vector<std::byte> bytes, read_file(path, kMaxSceneFile));
+    LUMEL_TRY(std::vector<std::byte> bytes, read_file(path, kMaxLitSceneFile));
     LUMEL_TRY(GltfDocumentPtr document, read_document(std::move(bytes), path, path.string()));
     if (!find_extension(document->root, kExtension))
         return invalid(path.string(), "has no LUMEL_lightmap extension", "give the output folder of lumel bake");

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "base/try.h"
+#include "io/little_endian.h"
 
 namespace lumel {
 namespace {
@@ -41,12 +42,6 @@ constexpr struct {
                    {"v3d", 24},
                    {"v3f", 12},
                    {"v3i", 12}};
-
-std::uint32_t read_u32(std::span<const std::byte> data, std::size_t at) {
-    std::uint32_t value = 0;
-    std::memcpy(&value, data.data() + at, 4);
-    return value;
-}
 
 // Bytes up to and with the next zero; 0 where there is none.
 std::size_t text_length(std::span<const std::byte> data, std::size_t at) {

@@ -21,10 +21,6 @@ namespace fs = std::filesystem;
 // kReplaced only where the newer group has no manifest yet.
 constexpr std::string_view kLeaving = ".leaving-", kReplaced = ".replaced-";
 
-Error folder_error(const char* doing, const fs::path& path, const std::error_code& error) {
-    return system_error(doing, path, error.value());
-}
-
 std::vector<fs::path> entries(const fs::path& folder, std::error_code& error) {
     std::vector<fs::path> out;
     for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
@@ -52,7 +48,7 @@ public:
     Status move(const fs::path& from, const fs::path& to) {
         std::error_code error;
         fs::rename(from, to, error);
-        if (error) return folder_error("moving into place", to, error);
+        if (error) return system_error("moving into place", to, error);
         done_.emplace_back(from, to);
         return success();
     }
@@ -73,14 +69,14 @@ private:
 Status put_back(const fs::path& leaving, const FileGroup& group) {
     std::error_code error;
     std::vector<fs::path> files = entries(leaving, error);
-    if (error) return folder_error("listing the folder", leaving, error);
+    if (error) return system_error("listing the folder", leaving, error);
     std::stable_partition(files.begin(), files.end(),
                           [&](const fs::path& file) { return file.filename() != group.manifest; });
     for (const fs::path& file : files) {
         const fs::path place = group.folder / file.filename();
         if (fs::exists(fs::symlink_status(place, error))) continue;
         fs::rename(file, place, error);
-        if (error) return folder_error("putting back a file of an interrupted run", place, error);
+        if (error) return system_error("putting back a file of an interrupted run", place, error);
     }
     fs::remove(leaving, error);  // only where it is empty
     return success();
@@ -90,9 +86,9 @@ Status remove_members(const FileGroup& group) {
     std::error_code error;
     for (const fs::path& file : entries(group.folder, error)) {
         if (group.is_member(file.filename().string())) fs::remove(file, error);
-        if (error) return folder_error("removing a file of an interrupted run", file, error);
+        if (error) return system_error("removing a file of an interrupted run", file, error);
     }
-    if (error) return folder_error("listing the folder", group.folder, error);
+    if (error) return system_error("listing the folder", group.folder, error);
     return success();
 }
 
@@ -132,7 +128,7 @@ Status recover(const FileGroup& group) {
         const std::string number =
             replaced.filename().string().substr(group.beside.filename().string().size() + kReplaced.size());
         fs::rename(replaced, numbered(group, kLeaving, number), error);
-        if (error) return folder_error("putting back files of an interrupted run", replaced, error);
+        if (error) return system_error("putting back files of an interrupted run", replaced, error);
     }
     for (const fs::path& leaving : all_numbered(group, kLeaving)) {
         if (group.is_complete())
@@ -154,7 +150,7 @@ Status check_not_foreign(const FileGroup& group, const fs::path& shown) {
             return Error{ErrorCode::io,
                          "exists and would be replaced, but no finished " + group.maker + " is in this folder",
                          (shown / file.filename()).string(), remedy};
-    if (error) return folder_error("listing the folder", shown, error);
+    if (error) return system_error("listing the folder", shown, error);
     return success();
 }
 
@@ -162,9 +158,9 @@ Status replace_group(const FileGroup& group, const fs::path& from, const std::st
     LUMEL_TRY_STATUS(recover(group));  // of a process that was killed since
     std::error_code error;
     std::vector<fs::path> old = entries(group.folder, error);
-    if (error) return folder_error("listing the folder", group.folder, error);
+    if (error) return system_error("listing the folder", group.folder, error);
     std::vector<fs::path> fresh = entries(from, error);
-    if (error) return folder_error("listing the folder", from, error);
+    if (error) return system_error("listing the folder", from, error);
     const auto is_manifest = [&](const fs::path& file) { return file.filename() == group.manifest; };
     std::erase_if(old, [&](const fs::path& file) { return !group.is_member(file.filename().string()); });
     std::stable_partition(old.begin(), old.end(), is_manifest);
@@ -174,7 +170,7 @@ Status replace_group(const FileGroup& group, const fs::path& from, const std::st
 
     const fs::path leaving = numbered(group, kLeaving, number), replaced = numbered(group, kReplaced, number);
     fs::create_directory(leaving, error);
-    if (error) return folder_error("creating the folder", leaving, error);
+    if (error) return system_error("creating the folder", leaving, error);
     Moves moves;
     const auto move_all = [&]() -> Status {
         for (const fs::path& file : old) LUMEL_TRY_STATUS(moves.move(file, leaving / file.filename()));

@@ -10,6 +10,7 @@
 #include "io/data_uri.h"
 #include "io/image_codecs.h"
 #include "io/image_io.h"
+#include "io/little_endian.h"
 #include "io/page_files.h"
 
 namespace lumel {
@@ -49,12 +50,6 @@ constexpr std::array<std::string_view, 30> kKnownExtensions{"KHR_lights_punctual
                                                             "MSFT_lod",
                                                             "MOZ_lightmap",
                                                             kLightmapExtension};
-
-std::uint32_t read_u32(std::span<const std::byte> bytes, std::size_t at) {
-    std::uint32_t value = 0;
-    std::memcpy(&value, bytes.data() + at, 4);
-    return value;
-}
 
 // What was meant can often be told from what it is.
 Error not_a_scene(std::span<const std::byte> bytes, const std::string& where) {

@@ -1,6 +1,7 @@
 // Image files: OpenEXR, Radiance HDR, PFM, PNG, JPEG. Bounded reading of foreign bytes, whole-or-nothing writing.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -31,6 +32,9 @@ Result<Texture> decode_texture(std::span<const std::byte> bytes, const std::stri
 
 // .hdr or .exr, 2:1 equirectangular. Negative and non-finite pixels are errors.
 Result<SkyMap> read_sky(const std::filesystem::path& path);
+
+// What EXR calls the channels of a colour.
+inline constexpr std::array<const char*, 3> kRgbChannels{"R", "G", "B"};
 
 // Named channels of an EXR (masters).
 struct NamedChannels {

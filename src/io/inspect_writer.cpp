@@ -17,7 +17,7 @@ namespace {
 constexpr const char* kPageMark = "_page";
 constexpr const char* kViewMark = "_view";
 
-// <something>_page<number> or <something>_view<number>, of either kind.
+// <something>_page<finite_or_null> or <something>_view<finite_or_null>, of either kind.
 bool is_inspected_file(const std::string& name) {
     for (const char* mark : {kPageMark, kViewMark}) {
         const std::size_t at = name.rfind(mark);
@@ -36,7 +36,6 @@ std::string file_stem(const std::string& layer, InspectedPlace place) {
 }
 
 // JSON has no infinity.
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 }  // namespace
 
@@ -77,9 +76,9 @@ Status InspectWriter::commit(const std::filesystem::path& bake, std::span<const 
                         {"what", layer.what},
                         {"unit", layer.unit},
                         {"channels", layer.channels},
-                        {"low", number(layer.low)},
-                        {"high", number(layer.high)},
-                        {"exposure", number(layer.exposure)},
+                        {"low", finite_or_null(layer.low)},
+                        {"high", finite_or_null(layer.high)},
+                        {"exposure", finite_or_null(layer.exposure)},
                         {"files", layer.files}});
     const Json json{
         {"version", 1}, {"generator", "Lumel"}, {"bake", relative_to(folder_, bake)}, {"layers", std::move(list)}};

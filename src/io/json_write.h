@@ -3,6 +3,7 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <cstdlib>
 
 #include "io/json_read.h"
@@ -16,6 +17,8 @@ inline double json_number(float value) {
     std::to_chars(text.data(), text.data() + text.size() - 1, value);
     return std::strtod(text.data(), nullptr);
 }
+
+inline Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 inline Json json_array(Vec3 v) { return Json::array({json_number(v.x), json_number(v.y), json_number(v.z)}); }
 inline Json json_array(Vec2 v) { return Json::array({json_number(v.x), json_number(v.y)}); }

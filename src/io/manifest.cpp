@@ -39,7 +39,6 @@ FileMeaning meaning_of(PageFile kind) {
 }
 
 // JSON has no infinity.
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json files_json(const ManifestPage& page, std::uint32_t index, std::uint32_t mip) {
     Json files = Json::object();
@@ -116,7 +115,7 @@ Json manifest_json(const ManifestInput& in) {
     out["kept_charts"] = in.atlas.kept;
     out["lookups"] = lookups_json(in.atlas.masks);
     out["scene_wide_uvs"] = in.charts.scene_wide;
-    out["figures"] = {{"estimated_nrmse", number(in.report.estimated_nrmse)},
+    out["figures"] = {{"estimated_nrmse", finite_or_null(in.report.estimated_nrmse)},
                       {"mean_irradiance", in.report.mean_irradiance}};
     out["pages"] = pages_json(in.pages);
     out["instances"] = instances_json(in.scene, in.charts, in.atlas);
@@ -128,8 +127,8 @@ Json stages_json(const BakeReport& report) {
     Json out = Json::array();
     for (const StageTime& stage : report.stages)
         out.push_back({{"stage", stage.stage},
-                       {"wall_seconds", number(stage.wall_seconds)},
-                       {"cpu_seconds", number(stage.cpu_seconds)}});
+                       {"wall_seconds", finite_or_null(stage.wall_seconds)},
+                       {"cpu_seconds", finite_or_null(stage.cpu_seconds)}});
     return out;
 }
 
@@ -212,23 +211,23 @@ Json report_json(const ManifestInput& in, const Diagnostics& diagnostics) {
     out["cells"] = report.cells;
     out["samples"] = report.samples;
     out["rays"] = report.rays;
-    out["rays_per_second"] = number(report.rays_per_second);
-    out["trace_wall_seconds"] = number(report.trace_wall_seconds);
-    out["tracer_seconds"] = number(report.tracer_seconds);
+    out["rays_per_second"] = finite_or_null(report.rays_per_second);
+    out["trace_wall_seconds"] = finite_or_null(report.trace_wall_seconds);
+    out["tracer_seconds"] = finite_or_null(report.tracer_seconds);
     out["tracer"] = report.tracer;
     out["threads"] = report.threads;
     out["peak_memory_bytes"] = report.peak_memory_bytes;
     out["predicted_memory_bytes"] = report.predicted_memory_bytes;
     out["samples_per_texel"] = report.samples_per_texel;
-    out["estimated_nrmse"] = number(report.estimated_nrmse);
-    out["cell_bias"] = number(report.cell_bias);
-    out["cell_bias_error"] = number(report.cell_bias_error);
-    out["seams"] = {{"metres", number(report.seam_metres)},
+    out["estimated_nrmse"] = finite_or_null(report.estimated_nrmse);
+    out["cell_bias"] = finite_or_null(report.cell_bias);
+    out["cell_bias_error"] = finite_or_null(report.cell_bias_error);
+    out["seams"] = {{"metres", finite_or_null(report.seam_metres)},
                     {"samples", report.seam_samples},
                     {"hidden_samples", report.hidden_seam_samples}};
-    out["share_within_error"] = number(report.share_within_error);
-    out["share_unlit"] = number(report.share_unlit);
-    out["share_out_of_samples"] = number(report.share_out_of_samples);
+    out["share_within_error"] = finite_or_null(report.share_within_error);
+    out["share_unlit"] = finite_or_null(report.share_unlit);
+    out["share_out_of_samples"] = finite_or_null(report.share_out_of_samples);
     out["mean_irradiance"] = report.mean_irradiance;
     out["warnings"] = warnings_json(diagnostics);
     return out;

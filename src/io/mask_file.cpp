@@ -7,7 +7,7 @@
 namespace lumel {
 namespace {
 
-constexpr std::uint32_t kMagic = 0x4b534d43, kVersion = 1;  // "CMSK"
+constexpr std::uint32_t kMagic = 0x4b534d43, kMaskVersion = 1;  // "CMSK"
 constexpr std::size_t kHeaderBytes = 16, kChartHeaderBytes = 4;
 // In memory rows of a mask take up to eight times their bytes, and the smallest masks eighteen times. What packing
 // takes on top grows with the largest mask, so that is bounded on its own, and with the page: see page_bytes() in
@@ -30,9 +30,9 @@ Status check_size(std::uint32_t width, std::uint32_t height, const std::string& 
                  where, "make it smaller, or several charts"};
 }
 
-class Decoder {
+class MaskDecoder {
 public:
-    Decoder(std::span<const std::byte> bytes, const std::string& where) : bytes_(bytes), where_(where) {}
+    MaskDecoder(std::span<const std::byte> bytes, const std::string& where) : bytes_(bytes), where_(where) {}
 
     Result<std::vector<ChartMask>> run() {
         LUMEL_TRY(const std::uint32_t count, header());
@@ -63,7 +63,7 @@ private:
         if (take(4) != kMagic)
             return Error{ErrorCode::invalid_input, "is no file of chart masks", where_, "give a .msk file"};
         const std::uint32_t version = take(4), count = take(4), reserved = take(4);
-        if (version != kVersion || reserved != 0)
+        if (version != kMaskVersion || reserved != 0)
             return Error{ErrorCode::unsupported, "is of version " + std::to_string(version) + ", not 1", where_,
                          "write it as version 1"};
         if (count > kMaxCharts)
@@ -108,7 +108,7 @@ void append(std::vector<std::byte>& out, std::uint64_t value, std::size_t size) 
 }  // namespace
 
 Result<std::vector<ChartMask>> decode_masks(std::span<const std::byte> bytes, const std::string& where) {
-    return Decoder(bytes, where).run();
+    return MaskDecoder(bytes, where).run();
 }
 
 Result<std::vector<ChartMask>> read_masks(const std::filesystem::path& path) {
@@ -119,7 +119,7 @@ Result<std::vector<ChartMask>> read_masks(const std::filesystem::path& path) {
 std::vector<std::byte> encode_masks(std::span<const ChartMask> masks) {
     std::vector<std::byte> out;
     append(out, kMagic, 4);
-    append(out, kVersion, 4);
+    append(out, kMaskVersion, 4);
     append(out, masks.size(), 4);
     append(out, 0, 4);
     for (const ChartMask& mask : masks) {

@@ -6,6 +6,7 @@
 #include "base/hash.h"
 #include "base/try.h"
 #include "io/image_codecs.h"
+#include "io/image_io.h"
 #include "io/json_read.h"
 #include "io/light_record.h"
 #include "io/page_files.h"
@@ -16,13 +17,11 @@
 namespace lumel {
 namespace {
 
-constexpr std::array<const char*, 3> kRgb{"R", "G", "B"};
 constexpr std::size_t kShChannels = 3 * kShCoefficients, kLayerChannels = kShChannels + 3;
 constexpr std::uint32_t kRowsAtOnce = 64;
 // No light is so bright; what encodings make of it, squares included, stays within float.
 constexpr float kLargest = 1e15f;
 constexpr std::uint64_t kMaxMasterFile = std::uint64_t{64} << 30;
-constexpr std::uint64_t kLargestPage = 16384;
 constexpr const char* kGiveABake = "give the output folder of lumel bake; bake again if an older one wrote it";
 
 bool is_possible(Vec3 v) { return max_component(max(v, -v)) <= kLargest && is_finite(v); }
@@ -34,8 +33,8 @@ std::vector<std::string> channel_names(const LayerWeights& layers) {
         if (layers[l] == 0.0f) continue;
         const std::string layer = kLayerNames[l];
         for (std::size_t i = 0; i < kShCoefficients; ++i)
-            for (const char* c : kRgb) out.push_back(layer + ".L" + std::to_string(i) + "." + c);
-        for (const char* c : kRgb) out.push_back(layer + ".I." + c);
+            for (const char* c : kRgbChannels) out.push_back(layer + ".L" + std::to_string(i) + "." + c);
+        for (const char* c : kRgbChannels) out.push_back(layer + ".I." + c);
     }
     return out;
 }

@@ -20,10 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Error folder_error(const char* doing, const fs::path& path, const std::error_code& error) {
-    return system_error(doing, path, error.value());
-}
-
 FileGroup bake_in(const fs::path& target) {
     return {target, target, "bake", kManifestFile, "\"Lumel\"", is_output_file};
 }
@@ -54,7 +50,7 @@ Result<OutputFolder> OutputFolder::create(const fs::path& target) {
     if (target.empty()) return Error{ErrorCode::usage, "the output folder has no name", {}, "give one with -o"};
     // Through links to the real place, so that moving stays within one file system; without a trailing slash.
     fs::path real = fs::weakly_canonical(fs::absolute(target, error), error);
-    if (error) return folder_error("finding the folder", target, error);
+    if (error) return system_error("finding the folder", target, error);
     if (real.filename().empty()) real = real.parent_path();
     const fs::file_status status = fs::status(real, error);
     if (fs::exists(status) && !fs::is_directory(status))
@@ -69,7 +65,7 @@ Result<OutputFolder> OutputFolder::create(const fs::path& target) {
         LUMEL_TRY_STATUS(check_not_foreign(bake_in(real), target));
     }
     fs::create_directories(real.parent_path(), error);
-    if (error) return folder_error("creating the folder", target, error);
+    if (error) return system_error("creating the folder", target, error);
     const std::string name = real.filename().string();
     remove_stale_partials(real.parent_path(), name + std::string(kPartial));
     const FileGroup bake = bake_in(real);
@@ -87,7 +83,7 @@ Status OutputFolder::commit() {
     std::error_code error;
     if (!fs::exists(target_, error)) {
         fs::rename(path(), target_, error);
-        if (error) return folder_error("moving into place", target_, error);
+        if (error) return system_error("moving into place", target_, error);
         partial_.release();
         return success();
     }

@@ -18,6 +18,8 @@ inline constexpr const char* kViewStem = "preview_view_";  // preview_view_0.png
 // What marks scene.glb as ours, its nodes and primitives too (docs/formats.md).
 inline constexpr const char* kLightmapExtension = "LUMEL_lightmap";
 
+inline constexpr std::uint64_t kLargestPage = 16384;  // texels along an edge that a page may have
+
 // What is written for each page.
 enum class PageFile : std::uint8_t {
     lightmap,         // I = E/pi over the included layers

@@ -15,7 +15,6 @@
 namespace lumel {
 namespace {
 
-constexpr std::array<const char*, 3> kRgb{"R", "G", "B"};
 constexpr std::array<const char*, 3> kXyz{"X", "Y", "Z"};
 
 // Fills one row of one channel: out[x] is the value of texels[x], zero where that is kNone.
@@ -130,7 +129,7 @@ private:
     Status write_irradiance_in(PageFile kind, ExrType type) {
         std::vector<Channel> channels;
         for (std::size_t c = 0; c < 3; ++c)
-            channels.push_back(channel(kRgb[c], type, [this, c, unit = unit_(kind)](std::size_t t) {
+            channels.push_back(channel(kRgbChannels[c], type, [this, c, unit = unit_(kind)](std::size_t t) {
                 return to_file_unit(irradiance(t)[c], unit);
             }));
         return write_channels(kind, type_name(type), channels);
@@ -151,10 +150,10 @@ private:
         for (std::size_t t = 0; t < map_.texels.size(); ++t)
             for (std::size_t c = 0; c < 3; ++c) check.add(to_file_unit(l1(t).l0[c], unit_(PageFile::l1)));
         std::vector<ExrChannelSource> sources;
-        for (std::size_t c = 0; c < 3; ++c) sources.push_back({std::string("L0.") + kRgb[c], check.type()});
+        for (std::size_t c = 0; c < 3; ++c) sources.push_back({std::string("L0.") + kRgbChannels[c], check.type()});
         for (std::size_t c = 0; c < 3; ++c)
             for (std::size_t k = 0; k < 3; ++k)
-                sources.push_back({std::string("L1n.") + kRgb[c] + "." + kXyz[k], ExrType::half});
+                sources.push_back({std::string("L1n.") + kRgbChannels[c] + "." + kXyz[k], ExrType::half});
         return write_rows(PageFile::l1, check.type() == ExrType::half ? "half" : "half+float", sources,
                           [this](auto texels, std::span<float> out) {
                               for (std::size_t x = 0; x < texels.size(); ++x) {
@@ -195,14 +194,15 @@ private:
         const RadianceSums& texels = map_.texels;
         for (std::size_t i = 0; i < kShCoefficients; ++i)
             for (std::size_t c = 0; c < 3; ++c)
-                channels.push_back(channel(layer + ".L" + std::to_string(i) + "." + kRgb[c], type,
+                channels.push_back(channel(layer + ".L" + std::to_string(i) + "." + kRgbChannels[c], type,
                                            [&texels, l, i, c, unit](std::size_t t) {
                                                return to_file_unit(texels.layers[t][l].sh[i][c], unit);
                                            }));
         for (std::size_t c = 0; c < 3; ++c)
-            channels.push_back(channel(layer + ".I." + kRgb[c], ExrType::full, [&texels, l, c, unit](std::size_t t) {
-                return to_file_unit(texels.layers[t][l].irradiance[c], unit);
-            }));
+            channels.push_back(
+                channel(layer + ".I." + kRgbChannels[c], ExrType::full, [&texels, l, c, unit](std::size_t t) {
+                    return to_file_unit(texels.layers[t][l].irradiance[c], unit);
+                }));
     }
 
     Status write_master() {
@@ -220,7 +220,7 @@ private:
                                        [this, c](std::size_t t) { return map_.normal[t][c]; }));
         for (std::size_t c = 0; c < 3; ++c)
             channels.push_back(
-                channel(std::string("variance.") + kRgb[c], ExrType::full, [&texels, c, unit](std::size_t t) {
+                channel(std::string("variance.") + kRgbChannels[c], ExrType::full, [&texels, c, unit](std::size_t t) {
                     // Of a light, hence twice.
                     return to_file_unit(to_file_unit(texels.variance[t][c], unit), unit);
                 }));
@@ -230,8 +230,8 @@ private:
     Status write_bent_normal() {
         std::vector<Channel> channels;
         for (std::size_t c = 0; c < 3; ++c)
-            channels.push_back(
-                channel(kRgb[c], ExrType::half, [this, c](std::size_t t) { return map_.texels.bent_normal[t][c]; }));
+            channels.push_back(channel(kRgbChannels[c], ExrType::half,
+                                       [this, c](std::size_t t) { return map_.texels.bent_normal[t][c]; }));
         return write_channels(PageFile::bent_normal, "half", channels);
     }
 

@@ -204,8 +204,8 @@ Result<SkySettings> read_sky_settings(const Json& json, const std::string& where
 
 // Calls read(value, where) for each member of the object `key` and stores the result by its name.
 template <class T, class Read>
-Status read_map(const Json& root, const char* key, std::map<std::string, T>& out, const std::string& where,
-                Read&& read) {
+Status read_members(const Json& root, const char* key, std::map<std::string, T>& out, const std::string& where,
+                    Read&& read) {
     LUMEL_TRY(const Json* object, optional_object(root, key, where));
     if (!object) return success();
     for (auto member = object->begin(); member != object->end(); ++member) {
@@ -226,8 +226,8 @@ Result<Sidecar> parse_sidecar(std::string_view text, const std::string& where) {
                            "this Lumel reads version 1");
     Sidecar out;
     out.where = where;
-    LUMEL_TRY_STATUS(read_map(root, "lights", out.lights, where, read_light));
-    LUMEL_TRY_STATUS(read_map(root, "nodes", out.nodes, where, read_node));
+    LUMEL_TRY_STATUS(read_members(root, "lights", out.lights, where, read_light));
+    LUMEL_TRY_STATUS(read_members(root, "nodes", out.nodes, where, read_node));
     LUMEL_TRY(const Json* area_lights, optional_array(root, "area_lights", where));
     for (std::size_t i = 0; area_lights && i < area_lights->size(); ++i) {
         LUMEL_TRY(SidecarAreaLight light,
